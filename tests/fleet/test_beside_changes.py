@@ -131,3 +131,13 @@ def test_effects_missing_here_and_there_are_missing_since_no_voyage() -> None:
 def test_runs_without_a_fit_are_missing_nothing() -> None:
     runs = [replace(row, date=date(2024, 1, 1), failure="empty") for row in voyages()]
     assert words(runs) == []
+
+
+@pytest.mark.parametrize(("samples", "told"), [(19, True), (160, False), (2000, False)])
+def test_a_log_that_is_cut_off_is_told(samples: int, told: bool) -> None:
+    """An outsider's voyage lost a zig-zag but for 19 s, and was fitted as if it were whole."""
+    logs = [f"{k:064x}:300, {k + 1000:064x}:{320 + k}" for k in range(16)]
+    logs[5] = f"{5:064x}:301, {1005:064x}:{samples}"
+    runs = [replace(row, logs=each) for row, each in zip(voyages(), logs, strict=True)]
+    said = f"trip 5: log 2 of 2 has {samples} samples, in her other voyages 328: was it cut off?"
+    assert words(runs) == [said] * told

@@ -3,10 +3,12 @@
 None of it is a change of a ship's parameter, and each may stand behind one that is told.
 """
 
+import re
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
+import numpy as np
 from scipy.stats import fisher_exact
 
 from trialid.fleet.changes.changes_of_ships import FEWEST, LEVEL, is_sound, with_a_say
@@ -14,6 +16,11 @@ from trialid.fleet.changes.courses import EITHER_SIDE
 from trialid.fleet.plan import is_no_day
 from trialid.names import wording
 from trialid.result.fleet_rows import Remark, RunRow
+
+SHORT: Final = 0.25
+"""Share of the samples that the same log of her other voyages usually has below which one is told.
+An outsider's, cut off after 19 of 321, was fitted among them without a word; half and twice tell
+the same there."""
 
 NAMED: Final = 3
 """Voyages or effects that a line names before it only counts them."""
@@ -30,7 +37,7 @@ def remarks(runs: Sequence[RunRow]) -> tuple[Remark, ...]:
     told = (
         Remark(ship=ship, words=words)
         for ship, rows in ships.items()
-        for tell in (_dates, _copies, _models, _no_fit_since, _missing_since)
+        for tell in (_dates, _copies, _cut_short, _models, _no_fit_since, _missing_since)
         for words in tell(rows)
     )
     return *told, *_too_few(ships)
@@ -99,6 +106,25 @@ def _copies(rows: Sequence[RunRow]) -> Iterator[str]:
     if alike:
         told = _few([" = ".join(voyages) for voyages in sorted(alike)])
         yield f"voyages hold the same log, and count as if they were independent: {told}"
+
+
+def _cut_short(rows: Sequence[RunRow]) -> Iterator[str]:
+    """Voyages one of whose logs holds far less than it does in the others."""
+    done = [row for row in rows if row.failure is None]
+    for own in _grouped(done, lambda row: len(_samples(row))).values():
+        usual = np.median([_samples(row) for row in own], axis=0)
+        for row in own:
+            for place, (found, most) in enumerate(zip(_samples(row), usual, strict=True), 1):
+                if found < SHORT * most:
+                    yield (
+                        f"{row.voyage}: log {place} of {len(usual)} has {found} samples, in her "
+                        f"other voyages {most:.0f}: was it cut off?"
+                    )
+
+
+def _samples(row: RunRow) -> list[int]:
+    """How many samples each of its trials has."""
+    return [int(n) for n in re.findall(r":(\d+)(?:, |$)", row.logs or "")]
 
 
 def _models(rows: Sequence[RunRow]) -> Iterator[str]:
