@@ -1,7 +1,6 @@
 """What a physical effect is: a plain function of named signals and named parameters."""
 
 import inspect
-import math
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -16,12 +15,12 @@ from trialid.maths import Number
 from trialid.names.quantities import QUANTITIES
 from trialid.ship.effect_checks import (
     check_own,
-    check_range,
     check_readings,
     check_scan,
     check_states,
     check_system,
     find_forms,
+    typical_parameter,
 )
 from trialid.ship.forms import (
     FORMS,
@@ -36,6 +35,7 @@ from trialid.ship.forms import (
     Steered,
 )
 from trialid.ship.parameter import Parameter, Signal
+from trialid.ship.shaping import keep_shapes
 
 __all__ = [
     "FORMS",
@@ -238,7 +238,7 @@ def effect(
         check_readings(name, signals, forms)
         check_scan(name, parameters)
         check_own(name, asked, made)
-        return Effect(
+        found = Effect(
             name=name,
             function=function,
             signals=signals,
@@ -251,6 +251,7 @@ def effect(
             corrects=corrects,
             stands_for=stands_for,
         )
+        return replace(found, parameters=keep_shapes(found))
 
     return declare
 
@@ -280,21 +281,4 @@ def _signature(
                 f'typical value, a signal of your own is {signal}=Signal("N"), with its unit'
             )
     given = {a.name: a.default for a in arguments if a.kind is a.KEYWORD_ONLY}
-    return signals, {n: _parameter(name, n, start) for n, start in given.items()}
-
-
-def _parameter(effect: str, name: str, start: Any) -> Parameter:
-    if start is inspect.Parameter.empty:
-        raise EffectError(
-            f"effect {effect!r}: parameter {name!r} has no typical value; "
-            f"write `{name}=...` in the signature"
-        )
-    made = start if isinstance(start, Parameter) else Parameter(start)
-    number = isinstance(made.start, int | float)
-    if not number or made.start == 0.0 or not math.isfinite(made.start):
-        raise EffectError(
-            f"effect {effect!r}: the typical value of parameter {name!r} is {made.start!r}; "
-            "it sets the scale of everything relative and must be a number other than 0"
-        )
-    check_range(effect, name, made)
-    return made
+    return signals, {n: typical_parameter(name, n, start) for n, start in given.items()}

@@ -1,5 +1,7 @@
 """What a declared effect must not do: names, numbers and forms that contradict one another."""
 
+import inspect
+import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
@@ -8,10 +10,10 @@ import numpy as np
 from trialid.errors import EffectError, nearest
 from trialid.names.quantities import ACCELERATIONS, MASS_PARAMETERS, PARTICULARS, SIGNALS
 from trialid.ship.forms import FORMS, SENSORS, Force, Mass, Rate, Result
-from trialid.ship.parameter import FROUDE
+from trialid.ship.parameter import FROUDE, Parameter
 
 if TYPE_CHECKING:
-    from trialid.ship.effect import Parameter, Signal, System
+    from trialid.ship.effect import Signal, System
 
 
 SIZES: Final = (0.001, 0.1, 1.0, 10.0, 1000.0)
@@ -30,7 +32,25 @@ def check_system(name: str, system: str) -> None:
         )
 
 
-def check_range(effect: str, name: str, parameter: "Parameter") -> None:
+def typical_parameter(effect: str, name: str, start: Any) -> Parameter:
+    """A parameter as the signature has it: a typical value, or a `Parameter` with one."""
+    if start is inspect.Parameter.empty:
+        raise EffectError(
+            f"effect {effect!r}: parameter {name!r} has no typical value; "
+            f"write `{name}=...` in the signature"
+        )
+    made = start if isinstance(start, Parameter) else Parameter(start)
+    number = isinstance(made.start, int | float)
+    if not number or made.start == 0.0 or not math.isfinite(made.start):
+        raise EffectError(
+            f"effect {effect!r}: the typical value of parameter {name!r} is {made.start!r}; "
+            "it sets the scale of everything relative and must be a number other than 0"
+        )
+    check_range(effect, name, made)
+    return made
+
+
+def check_range(effect: str, name: str, parameter: Parameter) -> None:
     """Refuse a range that runs backwards, is none, or leaves out the typical value."""
     low, high, start = parameter.low, parameter.high, parameter.start
     if not all(isinstance(end, int | float) for end in (low, high)) or not low < high:

@@ -73,6 +73,25 @@ def test_what_would_be_named_is_not(wrong, kind):
     assert found.sentence.startswith("she heels into her turns")
 
 
+@pytest.mark.parametrize(("known", "told"), [(0.1, True), (20.0, False), (None, False)])
+def test_where_nothing_is_missing_her_file_says_whether_it_matters(wrong, known, told):
+    """An outsider's roll of the wrong side was `nothing missing`, Kdelta 18.7 deviations off."""
+    value = MODEL.value("Kr")
+    prior = None if known is None else (value, known * abs(value))
+    problem = replace(
+        wrong.problem,
+        unknowns=tuple(
+            replace(x, prior=prior) if x.name == "Kr" else x for x in wrong.problem.unknowns
+        ),
+    )
+    nothing = Verdict("nothing missing", None, (), "no effect stands out")
+    found = settle(replace(wrong, problem=problem), nothing)
+    assert (found.kind == "cannot tell") is told
+    assert found.sentence.startswith("she heels into her turns") is told
+    right = identify(sailed(), PLAIN, SETTINGS)
+    assert settle(replace(right, problem=problem), nothing) is nothing
+
+
 def test_healthy_ships_and_stated_sides_have_their_verdict(wrong):
     named = Verdict("missing", "yaw_cubic_rrr", ("yaw_cubic_rrr",), "it is")
     stated = sailed(-1.0, frozenset({"phi"}))

@@ -23,6 +23,9 @@ TURNING: Final = frozenset(("r", "psi"))
 ABOUT_X: Final = frozenset(("phi", "p"))
 """What tells to which side she turns, and what goes by an axis that points ahead with z up too."""
 
+PUSHES_OVER: Final = frozenset(("Kv", "Kr", "Kdelta"))
+"""What heels her in a turn, of either sign by the side that the roll counts to."""
+
 TURNS: Final = np.deg2rad(20.0)
 """[rad] Least change of heading that is a turn; zig-zags of 2 and 5 deg of the S-175 have less."""
 
@@ -63,6 +66,12 @@ def side_in_doubt(fit: Fit) -> str | None:
             'it, and positive = "starboard" for phi where she does heel both ways'
         )
     return _doubt(inward, _turned_about(fit, inward)) if inward else None
+
+
+def pushed_over_otherwise(fit: Fit) -> bool:
+    """Whether a rudder or a turn pushes her over to the other side than her file knows for sure."""
+    known = {x.name: x.prior[0] for x in fit.problem.unknowns if x.prior and x.name in PUSHES_OVER}
+    return any(name in fit.contradicted and fit.value(name) * x < 0.0 for name, x in known.items())
 
 
 def _turned_about(fit: Fit, inward: tuple[str, ...]) -> tuple[str, ...]:

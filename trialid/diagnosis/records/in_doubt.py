@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Final
 
-from trialid.diagnosis.records.heel_side import side_in_doubt
+from trialid.diagnosis.records.heel_side import pushed_over_otherwise, side_in_doubt
 from trialid.diagnosis.records.rate_and_angle import rate_in_doubt
 from trialid.diagnosis.records.sampling_in_doubt import sampling_in_doubt
 from trialid.diagnosis.records.speed_in_doubt import speed_in_doubt
@@ -28,9 +28,11 @@ def settle(fit: Fit, verdict: Verdict, named: Effect | None = None) -> Verdict:
     """The verdict; of records in doubt, that and how to settle it.
 
     Nothing of a sensor that an effect is `named` of. Where nothing is missing the roll's side takes
-    no part; a rate, a speed or a unit that is wrong is in every number.
+    no part, unless what pushes her over has another sign than her file's: a boat that heels inward
+    is told by hers. A rate, a speed or a unit that is wrong is in every number.
     """
-    side = None if verdict.kind == "nothing missing" else side_in_doubt(fit)
+    told = verdict.kind == "nothing missing" and not pushed_over_otherwise(fit)
+    side = None if told else side_in_doubt(fit)
     asked = *(one(fit) for one in OF_ALL), rate_in_doubt(fit, named), side
     found = tuple(one for one in asked if one is not None)
     if not found:

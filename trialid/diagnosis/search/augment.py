@@ -17,6 +17,7 @@ from trialid.diagnosis.search.candidates import (
 )
 from trialid.diagnosis.search.projection import Evidence, gather
 from trialid.diagnosis.search.scan import secants
+from trialid.effects import CATALOGUE
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import Problem, Unknown, linearise, stretches
 from trialid.names.quantities import MASS_PARAMETERS
@@ -118,6 +119,7 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
         Trace(e, tuple(names.index(p) for p in linear_parameters(e)), linear_parameters(e))
         for e in linear
     ]
+    unmoved = _without_slope(traces, S)
     tried_, columns = _scanned(fit, base, [e for e in able.values() if e.tried], len(names))
     return Augmented(
         fit=fit,
@@ -126,7 +128,7 @@ def augment(fit: Fit, catalogue: Mapping[str, Effect]) -> Augmented:
         psi=psi,
         S=np.column_stack([S, *columns]),
         stretches=stretches(problem),
-        left_out=left_out | silent,
+        left_out=left_out | silent | unmoved,
         held=fixed_coefficients(fit),
         H=H,
     )
@@ -187,6 +189,19 @@ def _linear(
     psi, rest = np.split(psi, [len(fit.theta)], axis=1)
     # copies: a view of a few columns would keep those of the whole catalogue
     return residual, psi.copy(), rest[:, : len(columns)], rest[:, [every.index(n) for n in held]]
+
+
+def _without_slope(traces: Sequence[Trace], S: Vector) -> dict[str, str]:
+    """Effects that cannot be scored, as a parameter of theirs moves nothing where it is absent."""
+    found = dict[str, str]()
+    for one in traces:
+        pairs = zip(one.parameters, one.columns, strict=True)
+        dead = [n for n, column in pairs if not S[:, column].any()]
+        product = len(one.columns) > 1 and one.effect.name not in CATALOGUE
+        if dead:
+            also = "; of a product write null=None to all but one" if product else ""
+            found[one.effect.name] = f"{', '.join(dead)} moves nothing that is compared{also}"
+    return found
 
 
 def _scanned(

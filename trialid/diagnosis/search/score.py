@@ -116,10 +116,10 @@ def ranking_of(
     level
         Family-wise error rate over the whole catalogue.
     """
-    if not augmented.traces:
+    seen = [t for t in augmented.traces if _leaves_a_trace(augmented, t)]
+    if not seen:
         return ()
     evidence = augmented.evidence
-    seen = [t for t in augmented.traces if _leaves_a_trace(augmented, t)]
     visible = [t for t in seen if _visibility(augmented, t) > VISIBLE]
     white = evidence.white
     groups = [t.columns for t in visible]
