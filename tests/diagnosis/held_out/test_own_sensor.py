@@ -55,3 +55,16 @@ def test_of_noise_and_of_what_the_model_lacks_in_all_trials_nothing_is_told(seed
 
 def test_without_a_zero_in_the_fit_there_is_none_to_tell_of():
     assert own_sensors(fitted(33, np.deg2rad(2.0), asked=SETTINGS)) == []
+
+
+@pytest.mark.parametrize("unlike", [5, 20])
+def test_a_fitted_trial_that_is_unlike_the_rest_has_the_blame(unlike):
+    """An outsider's heel stood 3 deg off in one of those that were fitted."""
+    rng, trials = np.random.default_rng(34), []
+    for angle, use in ((5, "fit"), (20, "fit"), (10, "check")):
+        r, phi = white(rng, zigzag(angle).samples)
+        off = np.deg2rad(3.0) * (angle == unlike)
+        trials.append(with_noise(zigzag(angle, use=use), r, phi + off))
+    (words,) = own_sensors(identify(trials, MODEL, OFFSET))
+    assert words.startswith(f"{zigzag(10).name}, held out: b_phi of its own, -")
+    assert f"apart themselves, that of {zigzag(unlike).name} furthest from all the rest" in words

@@ -35,7 +35,33 @@ def own_sensors(fit: "Fit") -> list[str]:
         if left * OWN < 1.0 and np.sqrt(gone * whole) >= SEEN:
             said.append(
                 f"{score.trial.name}, held out: {name} of its own, {with_unit(off, units[name])} "
-                f"from the others', takes {gone:.0%} of its squared error: its sensors stood "
-                "otherwise, or something acts there alone; so much is not the model's"
+                f"from the others', takes {gone:.0%} of its squared error: "
+                f"{_where_it_is(fit, name, off, units[name])}"
             )
     return said
+
+
+def _where_it_is(fit: "Fit", name: str, off: float, unit: str) -> str:
+    """Whether it is this trial that is unlike the others, or one of those.
+
+    Of an outsider's three zig-zags the heel stood off in one that was fitted, and the faultless one
+    that was held out had the blame.
+    """
+    found = {t: fit.estimates.get(f"{name} [{t}]") for t in _fitted(fit)}
+    others = {t: x for t, x in found.items() if x is not None}
+    apart = float(np.ptp([*others.values()])) if others else 0.0
+    if apart <= abs(off):
+        return (
+            "its sensors stood otherwise, something acts there alone, or what the model lacks "
+            "looks like it there"
+        )
+    middle = float(np.median([*others.values(), np.mean([*others.values()]) + off]))
+    unlike = max(others, key=lambda t: abs(others[t] - middle))
+    return (
+        f"the others' are {with_unit(apart, unit)} apart themselves, that of {unlike} furthest "
+        "from all the rest: there it stood otherwise"
+    )
+
+
+def _fitted(fit: "Fit") -> list[str]:
+    return [t.name for t in fit.trials if t.use == "fit"]
