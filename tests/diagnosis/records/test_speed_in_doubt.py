@@ -68,6 +68,7 @@ def test_a_speed_that_is_the_same_in_all_trials_is_as_it_was_simulated(fit):
     ("by", "said"),
     [
         (1.944, "or the log is in kn and called m/s"),
+        (1.852, "in km/h and called kn"),
         (3.6, "or the log is in km/h and called m/s"),
         (1.0, None),
         (1.5, None),

@@ -19,7 +19,7 @@ VALUES: Final = 4
 """Values that a log takes where it is alive: at half of it a coarse one that stands between two is.
 Of 73 sets of an outsider's the same one, dead in a trial, is told at half and at ten times."""
 
-FASTER: Final = (("kn", "m/s"), ("km/h", "m/s"))
+FASTER: Final = (("kn", "m/s"), ("km/h", "kn"), ("km/h", "m/s"))
 """Units of a speed too large, and what they are called: half of what a file says she may well do,
 twice of it no ship does."""
 
@@ -58,11 +58,16 @@ def _another_unit(fit: Fit, logged: Sequence[Trial]) -> str | None:
     speeds = [speed for t in logged if (speed := approach_speed(t)) is not None]
     if not speeds or stated <= 0.0:
         return None
-    for one, called in FASTER:
-        if np.all(np.abs(np.array(speeds) / stated / too_large(one, called) - 1.0) < ABOUT):
-            return (
-                f"she sails at {np.median(speeds):.3g} m/s in all trials, "
-                f"{np.median(speeds) / stated:.3g} times the U0 of her file: either that is "
-                f"another ship's or another draught's, or the log is in {one} and called {called}"
-            )
-    return None
+    times = np.array(speeds) / stated
+    units = [
+        f"in {one} and called {called}"
+        for one, called in FASTER
+        if np.all(np.abs(times / too_large(one, called) - 1.0) < ABOUT)
+    ]
+    if not units:
+        return None
+    return (
+        f"she sails at {np.median(speeds):.3g} m/s in all trials, {np.median(times):.3g} times the "
+        "U0 of her file: either that is another ship's or another draught's, or the log is "
+        f"{', or '.join(units)}"
+    )
