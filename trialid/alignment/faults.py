@@ -50,6 +50,11 @@ FROZEN = 20.0
 its values are held, while others show that the ship moves. A coarse one often holds a value."""
 ALIVE = 0.25
 """The ship moves when another motion spreads by this share of its spread over the trial."""
+OTHERWISE, FAR, ENOUGH = np.deg2rad(3.0), 5.0, 3
+"""[rad] By how much a heading goes on otherwise than a rate that is held says, how many times more
+than in as long a time elsewhere, and in how many of these at least. In 1001 trials of outsiders
+none is told by it, an outsider's four that froze for 40 s are; half and twice of both say the same.
+"""
 GO_TOGETHER = {
     "psi": ("r",), "r": ("psi", "phi", "v"), "phi": ("p", "r"), "p": ("phi", "r"),
     "v": ("r", "psi"),
@@ -252,7 +257,25 @@ def _moves(series: Sequence[Series], i: int, ends: tuple[int, int]) -> bool:
     by_name = {one.quantity.name: one for one in series}
     names = GO_TOGETHER.get(series[i].quantity.name, ())
     told = [_lively(by_name[name], ends) for name in names if name in by_name]
-    return bool(told) and told[0]
+    is_rate = series[i].quantity.name == "r" and "psi" in by_name
+    otherwise = is_rate and _turns_otherwise(series[i], by_name["psi"], ends)
+    return (bool(told) and told[0]) or otherwise
+
+
+def _turns_otherwise(rate: Series, heading: Series, ends: tuple[int, int]) -> bool:
+    """Whether her heading goes on quite otherwise than the rate, as it nowhere else does."""
+    r, psi = available_samples(rate), available_samples(heading)
+    if min(len(r.t), len(psi.t)) < 2:
+        return False
+    begin, end = ((stamp - int(rate.t[0])) / 1e9 for stamp in ends)
+    went = np.append(0.0, np.cumsum(0.5 * (r.y[1:] + r.y[:-1]) * np.diff(r.t)))
+    k = int((begin - r.t[0]) / (end - begin))  # as long times before
+    at = np.arange(begin - k * (end - begin), r.t[-1], end - begin)
+    turned = np.interp(at, psi.t + (int(heading.t[0]) - int(rate.t[0])) / 1e9, psi.y)
+    apart = np.abs(np.diff(turned - np.interp(at, r.t, went)))
+    if not k < len(apart) > ENOUGH:
+        return False
+    return bool(apart[k] > max(OTHERWISE, FAR * np.median(np.delete(apart, k))))
 
 
 def _lively(series: Series, ends: tuple[int, int]) -> bool:
