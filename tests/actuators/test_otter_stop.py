@@ -20,7 +20,8 @@ from trialid.design.prediction.engine_orders import astern_orders, engine_of
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.stopping import sail_stop
 from trialid.design.standard import in_calm
-from trialid.effects.actuators.astern_gains import goes_astern
+from trialid.effects.actuators import actuator_effects
+from trialid.effects.actuators.astern_gains import drives_astern, held_astern
 from trialid.errors import DesignError, TrialidError
 from trialid.identification.fit import Fit
 from trialid.identification.remarks import _held_astern, untold_astern
@@ -103,9 +104,12 @@ def test_more_is_ordered_astern_than_nothing() -> None:
 REACH = "head reach [m]"
 
 
-@pytest.mark.parametrize("held", [0.1, 9.0])
+@pytest.mark.parametrize("held", [0.1, 9.0, 0.5])
 def test_a_thrust_astern_that_nobody_told_goes_by_that_ahead(held: float) -> None:
-    """An outsider's was held at nine times that ahead: 0.06 m (0 to 0.25) of a true 0.69."""
+    """An outsider's was held at nine times that ahead: 0.06 m (0 to 0.25) of a true 0.69.
+
+    What a screw may have is kept, and what it may have beside it counts, too.
+    """
     off = truth().with_values({"k_astern": held * otter.AHEAD})
     made = sail_stop(boat(off), 0.0, KNOWN, {}, astern=True, untold={"k_astern": "k_ahead"})
     by_share = [
@@ -115,10 +119,11 @@ def test_a_thrust_astern_that_nobody_told_goes_by_that_ahead(held: float) -> Non
         for x in (1.0, 0.8, 0.6)
     ]
     value, ends = made.numbers[REACH]
-    assert value == pytest.approx(by_share[1])
-    assert ends == pytest.approx((by_share[0], by_share[2]))
     told = sail_stop(boat(off), 0.0, KNOWN, {}, astern=True).numbers[REACH][0]
     assert not by_share[0] < told < by_share[2]
+    kept = held == 0.5
+    assert value == pytest.approx(told if kept else by_share[1])
+    assert ends == pytest.approx((by_share[0], told if kept else by_share[2]))
 
 
 def a_fit(held: float, *, astern: bool = False, free: tuple[str, ...] = ("k_ahead",)) -> Fit:
@@ -137,8 +142,19 @@ def test_which_gains_astern_nobody_told() -> None:
     assert untold_astern(a_fit(9.0)) == {"k_astern": "k_ahead"}
     assert untold_astern(a_fit(9.0, astern=True)) == {}
     assert untold_astern(a_fit(9.0, free=("k_ahead", "k_astern"))) == {}
-    assert not goes_astern(truth().ship, {"left": np.ones(3), "u": -np.ones(3)})
-    assert goes_astern(truth().ship, {"left": np.array([1.0, -0.2])})
+    ship, idle = truth().ship, 0.02 * np.random.default_rng(4).standard_normal(50)
+    assert drives_astern(ship, [{"left": np.ones(3), "u": -np.ones(3)}]) == set()
+    assert drives_astern(ship, [{"left": np.array([1.0, np.nan, -0.2])}]) == {"left"}
+    assert drives_astern(ship, [{"left": idle}, {"left": np.ones(3)}]) == set()
+
+
+def test_a_gain_of_its_own_is_told_by_its_own_drive_alone() -> None:
+    own = tuple(replace(a, own=True) for a in truth().ship.actuators)
+    ship = replace(truth().ship, actuators=own)
+    made = ShipModel(ship, ("u", "r"), (actuator_effects(ship, ("left", "right"))["thrusters"],))
+    assert held_astern(made, (), ("left",)) == {"k_astern_right": "k_ahead_right"}
+    assert held_astern(made, ("k_astern_right",), ("left",)) == {}
+    assert held_astern(truth(), (), ("left",)) == {}
 
 
 @pytest.mark.parametrize(("times", "told"), [(9.0, True), (0.8, False), (0.2, True), (1.5, False)])

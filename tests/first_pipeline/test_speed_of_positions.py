@@ -225,22 +225,41 @@ def test_an_hour_in_which_nothing_was_logged_is_no_standing_still(tmp_path: Path
     assert approach_by_positions(found) == pytest.approx(SPEED, rel=0.1)
 
 
-def turning(path: Path, reads: float, *, turn: float, current: complex = 0.6 - 0.8j) -> Path:
-    """A ship of 150 m put over at 100 s, in a current; her speed log reads by this factor."""
+def turning(
+    path: Path, reads: float, *, turn: float, current: complex = 0.6 - 0.8j, ground: bool = False
+) -> Path:
+    """A ship of 150 m put over at 100 s, in a current; her speed log reads by this factor.
+
+    `ground`: over the ground, as her receiver has it.
+    """
     t = np.arange(0.0, 700.0, 1.0)
     r = np.where((t > 100.0) & (np.cumsum(t > 100.0) * 0.7 < turn), 0.7, 0.0)
     psi, u = np.cumsum(r), 8.0 - 2.5 * np.clip((t - 100.0) / 150.0, 0.0, 1.0) * (turn > 0.0)
     v = -0.35 * u * np.deg2rad(r) / np.deg2rad(0.7) / 5.0
     rng = np.random.default_rng(5)
-    way = np.cumsum((u + 1j * v) * np.exp(1j * np.deg2rad(psi)) + current)
+    velocity = (u + 1j * v) * np.exp(1j * np.deg2rad(psi)) + current
+    u, way = np.abs(velocity) if ground else u, np.cumsum(velocity)
     fixes = (way + rng.standard_normal(len(t)) + 1j * rng.standard_normal(len(t))) / RADIUS
     table = np.column_stack(
         [t, 20.0 * np.sin(0.03 * t), psi % 360.0, reads * u / KNOT, np.rad2deg(fixes.real)]
     )
     table = np.column_stack([table, np.rad2deg(fixes.imag)])
-    heads = "time_s,rudder_deg,heading_deg,stw_kn,lat,lon"
+    heads = f"time_s,rudder_deg,heading_deg,{'sog' if ground else 'stw'}_kn,lat,lon"
     np.savetxt(path, table, delimiter=",", header=heads, comments="", fmt="%.9f")
     return path
+
+
+@pytest.mark.parametrize("reads", [1.0, 1.0 / 1.944])
+def test_a_speed_over_ground_and_one_in_another_unit_have_no_factor(
+    tmp_path: Path, reads: float
+) -> None:
+    """A current is in it and in the ways alike; a unit that is wrong is told as that."""
+    survey = inspect_log(turning(tmp_path / "a.csv", reads, turn=400.0, ground=reads == 1.0))
+    text = starter([survey], tmp_path / "p.toml", None, Given(length=150.0)).files[
+        tmp_path / "p.toml"
+    ]
+    assert "by her positions she goes" not in text
+    assert ("positions are sailed at" in text) is (reads != 1.0)
 
 
 @pytest.mark.parametrize(

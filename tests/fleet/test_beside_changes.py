@@ -133,7 +133,7 @@ def test_runs_without_a_fit_are_missing_nothing() -> None:
     assert words(runs) == []
 
 
-@pytest.mark.parametrize(("samples", "told"), [(19, True), (160, False), (2000, False)])
+@pytest.mark.parametrize(("samples", "told"), [(19, True), (81, True), (160, False), (1000, False)])
 def test_a_log_that_is_cut_off_is_told(samples: int, told: bool) -> None:
     """An outsider's voyage lost a zig-zag but for 19 s, and was fitted as if it were whole."""
     logs = [f"{k:064x}:300, {k + 1000:064x}:{320 + k}" for k in range(16)]
@@ -141,3 +141,10 @@ def test_a_log_that_is_cut_off_is_told(samples: int, told: bool) -> None:
     runs = [replace(row, logs=each) for row, each in zip(voyages(), logs, strict=True)]
     said = f"trip 5: log 2 of 2 has {samples} samples, in her other voyages 328: was it cut off?"
     assert words(runs) == [said] * told
+    two = [
+        replace(row, logs=each) for row, each in zip(voyages()[:2], (logs[4], logs[5]), strict=True)
+    ]
+    said = f"trip 1: log 2 of 2 has {samples} samples, in her other voyages 324: was it cut off?"
+    runs = [replace(row, voyage=f"trip {k}") for k, row in enumerate(two)]
+    assert (said in words([*runs, runs[1]])) is told
+    assert words([*runs, runs[1]]).count(said) == told

@@ -269,8 +269,8 @@ def _turns_otherwise(rate: Series, heading: Series, ends: tuple[int, int]) -> bo
         return False
     begin, end = ((stamp - int(rate.t[0])) / 1e9 for stamp in ends)
     went = np.append(0.0, np.cumsum(0.5 * (r.y[1:] + r.y[:-1]) * np.diff(r.t)))
-    k = int((begin - r.t[0]) / (end - begin))  # as long times before
-    at = np.arange(begin - k * (end - begin), r.t[-1], end - begin)
+    k, after = (int(x / (end - begin) + 1e-9) for x in (begin - r.t[0], r.t[-1] - begin))
+    at = begin + (end - begin) * np.arange(-k, after + 1)  # as long times before and after
     turned = np.interp(at, psi.t + (int(heading.t[0]) - int(rate.t[0])) / 1e9, psi.y)
     apart = np.abs(np.diff(turned - np.interp(at, r.t, went)))
     if not k < len(apart) > ENOUGH:

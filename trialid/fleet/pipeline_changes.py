@@ -9,6 +9,7 @@ from typing import Any
 import tomlkit
 
 from trialid.pipeline_file import Pipeline
+from trialid.pipeline_file.named_file import place_of
 
 Document = dict[str, Any]
 Change = Callable[[Document], None]
@@ -31,7 +32,7 @@ def move_files(pipeline: Pipeline, place: Path) -> Change:
     """Files named from another folder: the same ones, seen from where the text will lie."""
 
     def seen(name: str) -> str:
-        return relative(pipeline.path.parent / name, place.parent)
+        return relative(place_of(Path(name), pipeline.path), place.parent)
 
     def change(document: Document) -> None:
         if "ship" in document:

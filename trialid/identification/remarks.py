@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from trialid.accuracy.parameter_table import Accuracy
-from trialid.effects.actuators.astern_gains import goes_astern, held_astern
+from trialid.effects.actuators.astern_gains import USUAL, drives_astern, held_astern
 from trialid.identification.approach import approach_speed
 from trialid.identification.check.own_sensor import own_sensors
 from trialid.identification.fit import Fit
@@ -67,10 +67,6 @@ OTHER_MASS: Final = 2.0
 """Factor on a thrust in newtons from which on her file's mass is doubted: a hull's part in it, and
 the water that she carries, are some tenths. Half of it is no factor; by twice of it two boats
 whose masses were guessed five and seven times too large are still told, at 4.1 and 6.7."""
-
-USUAL_ASTERN: Final = (0.3, 2.0)
-"""Shares of the gain ahead that one astern may be held at without a word: half of the least and
-twice the most of a propeller's. Of an outsider's boat it was held at nine times."""
 
 DAMPS: Final = {"Yv": "drifts", "Nr": "turns"}
 """What holds a hull back, below zero for all of them, and when."""
@@ -164,8 +160,9 @@ def _astern(fit: Fit) -> list[str]:
 
 def untold_astern(fit: Fit) -> dict[str, str]:
     """Gains of thrust astern that are held and no fitted trial shows, each with that ahead."""
-    shown = any(goes_astern(fit.model.ship, t.signals) for t in fit.trials if t.use == "fit")
-    return {} if shown else held_astern(fit.model, {x.name for x in fit.problem.unknowns})
+    fitted = (t.signals for t in fit.trials if t.use == "fit")
+    astern = drives_astern(fit.model.ship, fitted)
+    return held_astern(fit.model, {x.name for x in fit.problem.unknowns}, astern)
 
 
 def _held_astern(fit: Fit) -> list[str]:
@@ -178,9 +175,9 @@ def _held_astern(fit: Fit) -> list[str]:
     }
     return [
         f"{n} is held at {times:.2g} times {ahead}, and screws have 0.6 to 1: no trial goes "
-        "astern, what she does there is not known; state it, or sail one that does and free it"
+        "astern, what she does there is not known: sail one that does, and free it"
         for n, (ahead, times) in off.items()
-        if not USUAL_ASTERN[0] < times < USUAL_ASTERN[1]
+        if not USUAL[0] < times < USUAL[1]
     ]
 
 

@@ -190,7 +190,7 @@ def _lent(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
     base = load(path.parent / table["pipeline"])
     lent: dict[str, Any] = {"identify": base.identify.model_dump()}
     model = base.model.model_dump(exclude={"effects_from"})
-    model["effects_from"] = [base.path.parent.resolve() / f for f in base.model.effects_from]
+    model["effects_from"] = [f.resolve() for f in base.model.effects_from]
     lent["model"] = model
     if base.ship is not None:
         lent["ship"] = base.ship.resolve()

@@ -36,8 +36,11 @@ def _existing_log(path: Path, info: ValidationInfo) -> Path:
 
 
 def _place(path: Path, info: ValidationInfo) -> Path:
-    """Beside the pipeline; else, of a run's copy, beside what it is a copy of."""
-    origin = cast(Origin, info.context).path
+    return place_of(path, cast(Origin, info.context).path)
+
+
+def place_of(path: Path, origin: Path) -> Path:
+    """A file beside the pipeline that names it; else, of a run's copy, beside what that is of."""
     found = origin.parent / path
     stood = stood_at(origin) if _kind(found) == "neither" else None
     return found if stood is None else stood.parent / path

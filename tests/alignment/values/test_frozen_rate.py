@@ -13,6 +13,7 @@ NS = np.round(T * 1e9).astype(np.int64)
 RATE = 0.01 * np.sign(np.sin(2.0 * np.pi * (T + 0.1) / 200.0))
 """[rad/s] To and fro, 100 s each; then a long turn, beside which what goes before is little."""
 RATE = np.where(T > 600.0, 0.02, RATE)
+RATE[T > 870.0] = -0.01
 
 
 def series(name, y, shift=0.0):
@@ -29,7 +30,9 @@ def frozen(begin, length=40.0, gain=1.0, noise=1e-4):
 
 
 @pytest.mark.parametrize("gain", [1.0, 1.1])
-@pytest.mark.parametrize(("begin", "told"), [(180.0, True), (85.0, True), (120.0, False)])
+@pytest.mark.parametrize(
+    ("begin", "told"), [(180.0, True), (85.0, True), (120.0, False), (860.0, True)]
+)
 def test_only_where_she_turns_otherwise_than_it_says(begin, told, gain):
     """A gyro that reads a tenth too much is so everywhere, and is not frozen for it."""
     rate, heading, ends = frozen(begin, gain=gain)

@@ -1,6 +1,7 @@
 """A rudder that is recorded late: before that is settled nothing that seems missing has a name."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -65,6 +66,18 @@ def test_what_is_of_the_rudder_s_record_keeps_its_name(lagging):
 def test_where_nothing_is_missing_it_changes_nothing(lagging):
     nothing = Verdict("nothing missing", None, (), "no effect stands out")
     assert settle(lagging, nothing) is nothing
+
+
+@pytest.mark.parametrize(
+    ("outputs", "told"), [(("r", "phi"), True), (("r", "psi"), False), (("v", "r"), False)]
+)
+def test_of_a_turn_alone_it_is_not_said(outputs, told, monkeypatch):
+    """A hull that answers sooner makes rate and heading early alike, and hardly the roll."""
+    unknowns = [SimpleNamespace(column=f"tau_{c}") for c in outputs]
+    fit = SimpleNamespace(problem=SimpleNamespace(outputs=outputs, unknowns=unknowns))
+    place = "trialid.diagnosis.records.rudder_late.in_all_trials"
+    monkeypatch.setattr(place, lambda fit: dict.fromkeys(fit.problem.outputs, -2.0))
+    assert (rudder_in_doubt(fit) is not None) is told
 
 
 @pytest.mark.parametrize(("lag", "early"), [(0.0, 0.0), (0.0, 3.0)])

@@ -23,6 +23,7 @@ def turned(seed: int) -> np.ndarray:
 SIDES = ("Azimuth port rpm", "Azimuth stbd rpm")
 ENDS = ("pod_aft_rpm", "pod_fwd_rpm")
 AT_ENDS = ("pod_aft_angle_deg", "pod_fwd_angle_deg")
+AFT_BOTH = ("aft_azimuth_1_angle_deg", "aft_azimuth_2_angle_deg")
 
 
 def pods(
@@ -134,17 +135,32 @@ def test_ends_that_may_be_exchanged_are_told(tmp_path: Path) -> None:
         (ENDS, AT_ENDS[:1]),
         (("pod_aft_port_rpm", "pod_fwd_stbd_rpm"), AT_ENDS),
         (ENDS, ("pod_aft_wind_angle_deg", "pod_fwd_wind_angle_deg")),
+        (("rear_motor_1_rpm", "rear_motor_2_rpm"), ()),
+        (("aft_azimuth_1_rpm", "aft_azimuth_2_rpm"), AFT_BOTH),
     ],
 )
 def test_ends_without_an_angle_each_are_no_pods(
     tmp_path: Path, turns: tuple[str, ...], angles: tuple[str, ...]
 ) -> None:
-    log = pods(tmp_path / "a.csv", angles, turns=turns, less=2.0)
+    log = pods(tmp_path / "a.csv", angles, turns=turns, less=0.4)
     try:
         text = begun(tmp_path, log).files[tmp_path / "p.toml"]
     except LogError as unread:
         text = str(unread)
     assert "thruster_fore" not in text
+    assert ("thruster_port_angle" in text) is (angles == AFT_BOTH)
+
+
+@pytest.mark.parametrize(
+    "turns", [("azimuth_1_rpm", "azimuth_2_rpm"), ("aft_azimuth_1_rpm", "aft_azimuth_2_rpm")]
+)
+def test_pods_of_a_number_keep_their_angles_where_a_name_says_an_end(
+    tmp_path: Path, turns: tuple[str, ...]
+) -> None:
+    text = begun(tmp_path, pods(tmp_path / "a.csv", AFT_BOTH, turns=turns)).files[
+        tmp_path / "p.toml"
+    ]
+    assert 'thruster_port_angle      = { channel = "aft_azimuth_1_angle_deg"' in text
 
 
 def test_angles_that_are_called_so_are_no_rudders(tmp_path: Path) -> None:

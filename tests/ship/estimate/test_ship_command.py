@@ -97,6 +97,7 @@ HULL = "--length 175 --beam 25.4 --draught 8.5 --block 0.56"
         ("--length 0.175", "length 0.175 m is no ship's; was it in kilometres?"),
         ("--length 175 --beam 254", "beam 254 m is more than the length 175 m"),
         ("--length 175 --draught 850", "draught 850 m is more than the length 175 m"),
+        ("--length 175 --beam 25 --draught 85", "draught 85 m is 3.4 times the beam 25 m; a slip?"),
         ("--length 175 --beam 2.54", "makes a hull of 175 x 2.54 x"),
         ("--length 175 --block 1.01", "block coefficient 1.01 is above 1"),
         ("--length 175 --block 0.03", "block coefficient 0.03 is below 0.05"),

@@ -14,6 +14,7 @@ from trialid.design.helm import Vessel, vessel
 from trialid.design.prediction.embrace import embrace
 from trialid.design.prediction.likely_spread import Range
 from trialid.design.prediction.ranged_motion import PredictedMotion
+from trialid.effects.actuators.astern_gains import USUAL
 from trialid.effects.propulsion import propeller_astern
 from trialid.ship.model import ShipModel
 
@@ -26,11 +27,16 @@ REMARK: Final = (
 
 
 def gains_astern(ship: Vessel, untold: Mapping[str, str]) -> tuple[Vessel, ...]:
-    """The ship with each thrust astern that hers may have, by the gains ahead; none if told."""
+    """The ship with each thrust astern that hers may have, by the gains ahead; none if told.
+
+    First as it is held, where a screw may have that.
+    """
+    value = ship.model.value
     known = [
-        ship.model.with_values({n: (1.0 - x) * ship.model.value(a) for n, a in untold.items()})
-        for x in LESS
+        ship.model.with_values({n: (1.0 - x) * value(a) for n, a in untold.items()}) for x in LESS
     ]
+    if all(USUAL[0] * value(a) < value(n) < USUAL[1] * value(a) for n, a in untold.items()):
+        known.insert(0, ship.model)
     made = (vessel(one, ship.period, ship.constants, ship.rudder_rate) for one in known)
     return tuple(made) if untold else ()
 

@@ -197,7 +197,7 @@ def _without_slope(traces: Sequence[Trace], S: Vector) -> dict[str, str]:
     for one in traces:
         pairs = zip(one.parameters, one.columns, strict=True)
         dead = [n for n, column in pairs if not S[:, column].any()]
-        product = len(one.columns) > 1 and one.effect.name not in CATALOGUE
+        product = len(dead) > 1 and one.effect.name not in CATALOGUE
         if dead:
             also = "; of a product write null=None to all but one" if product else ""
             found[one.effect.name] = f"{', '.join(dead)} moves nothing that is compared{also}"

@@ -110,12 +110,13 @@ def _copies(rows: Sequence[RunRow]) -> Iterator[str]:
 
 def _cut_short(rows: Sequence[RunRow]) -> Iterator[str]:
     """Voyages one of whose logs holds far less than it does in the others."""
-    done = [row for row in rows if row.failure is None]
-    for own in _grouped(done, lambda row: len(_samples(row))).values():
-        usual = np.median([_samples(row) for row in own], axis=0)
+    done = {row.voyage: row for row in rows if row.failure is None and _samples(row)}
+    for own in _grouped(list(done.values()), lambda row: len(_samples(row))).values():
         for row in own:
+            others = [_samples(other) for other in own if other is not row]
+            usual = np.median(others, axis=0) if others else np.zeros(len(_samples(row)))
             for place, (found, most) in enumerate(zip(_samples(row), usual, strict=True), 1):
-                if found < SHORT * most:
+                if found <= SHORT * most:
                     yield (
                         f"{row.voyage}: log {place} of {len(usual)} has {found} samples, in her "
                         f"other voyages {most:.0f}: was it cut off?"

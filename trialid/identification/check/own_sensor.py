@@ -59,7 +59,7 @@ def _where_it_is(fit: "Fit", name: str, off: float, unit: str) -> str:
     unlike = max(others, key=lambda t: abs(others[t] - middle))
     return (
         f"the others' are {with_unit(apart, unit)} apart themselves, that of {unlike} furthest "
-        "from all the rest: there it stood otherwise"
+        "from all the rest: rather there it stood otherwise, or what the model lacks looks like it"
     )
 
 

@@ -25,6 +25,10 @@ HIGHEST: Final = 1.5
 """Factor on the estimated metacentre that a GM may reach: beyond it gravity is below the keel."""
 FASTEST: Final = 3.0
 """Froude number of a racing boat."""
+DEEPEST: Final = 2.0
+"""Draught over beam of no ship: a racing yacht's with her keel is 1.2, a submarine's 1; ..."""
+OF_MODELS: Final = 10.0
+"""[m] ... model yachts, which are shorter, hang their keels to three times their beam."""
 SLIMMEST: Final = 40.0
 """Length over beam, and beam over draught, of no hull: a rowing shell has 30. Over both hulls of a
 light catamaran it is more, 50 of one of 5 m and 320 kg, ..."""
@@ -92,6 +96,9 @@ def _sides(given: Given) -> Found:
         value = getattr(given, name)
         if value is not None and value > L:
             yield name, f"{tell(given, name)} is more than the length {L:g} m; are both in metres?"
+    B, T = given.beam, given.draught
+    if B is not None and T is not None and L > OF_MODELS and DEEPEST * B < T <= L:
+        yield "draught", f"{tell(given, 'draught')} is {T / B:.2g} times the beam {B:g} m; a slip?"
     if given.x_G is not None and abs(given.x_G) > 0.5 * L:
         yield "x_G", f"{tell(given, 'x_G')} is outside a ship of {L:g} m"
 

@@ -14,7 +14,7 @@ from trialid.design.ordered_signals import late_orders
 from trialid.design.rating import Goal
 from trialid.design.search import Found, Outcome, Search, Ship, optimise, outcome, sail_all, score
 from trialid.design.separation import Separation, likeness, rivals, separate
-from trialid.effects.actuators.astern_gains import goes_astern, held_astern
+from trialid.effects.actuators.astern_gains import drives_astern, held_astern
 from trialid.errors import DesignError, PipelineError, nearest
 from trialid.identification.problem import Settings
 from trialid.names.wording import named_together
@@ -153,8 +153,8 @@ def _rated(
 def _held_astern(pipeline: DesignFile, came: Outcome, ship: Ship) -> list[str]:
     """That what she does astern goes by a gain that nothing has found."""
     model = ship.vessel.model
-    held = [*held_astern(model, pipeline.identify.free)]
-    if not held or not any(goes_astern(model.ship, p.trial.signals) for p in came.passages):
+    held = [*held_astern(model, pipeline.identify.free, ())]
+    if not held or not drives_astern(model.ship, (p.trial.signals for p in came.passages)):
         return []
     are = "is" if len(held) == 1 else "are"
     return [

@@ -21,12 +21,12 @@ from trialid.workflow.first_pipeline.boats.actuators_begun import (
     main_drives,
     named_by_ship,
 )
-from trialid.workflow.first_pipeline.boats.boat_choice import AFT, PORT, choose, is_boat
+from trialid.workflow.first_pipeline.boats.boat_choice import PORT, choose, is_boat
 from trialid.workflow.first_pipeline.boats.numbered_drives import with_ports
 from trialid.workflow.first_pipeline.boats.one_drive import DRIVE, with_turned_drive
 from trialid.workflow.first_pipeline.boats.over_ground import with_speed_by_position
 from trialid.workflow.first_pipeline.boats.tunnel_thrusters import tunnels_of, with_tunnels
-from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE
+from trialid.workflow.first_pipeline.boats.turned_drives import AFT, ANGLE
 from trialid.workflow.first_pipeline.by_other_logs import (
     with_sides,
     with_units,

@@ -9,6 +9,7 @@ import numpy as np
 from trialid.alignment.track.antenna import speeds_apart
 from trialid.inspection.inspected import Inspection
 from trialid.inspection.log_factor import log_factor
+from trialid.inspection.name_words import is_through_water
 from trialid.inspection.positions import usual_speed
 from trialid.inspection.relations import unit_by_way, unit_of_speed
 from trialid.inspection.sketch import Sketch
@@ -72,9 +73,15 @@ def held_against_track(trial: Chosen) -> Chosen:
 
 
 def _measured(speed: Signal, psi: Signal | None, survey: Inspection) -> Signal:
-    """A speed with the factor that her positions say is on it, where she turns and it is one."""
+    """A speed with the factor that her positions say is on it, where she turns and it is one.
+
+    Of one through the water by its name: over the ground a current is in the log and in the ways.
+    """
+    doubted = any("positions are sailed at" in words for words in speed.further)
+    if doubted or speed.others or not is_through_water(speed.source.name):
+        return speed
     of_speed, of_heading = _in_si(speed, "m/s"), _in_si(psi, "rad") if psi else None
-    if of_speed is None or of_heading is None or speed.others:
+    if of_speed is None or of_heading is None:
         return speed
     found = log_factor(survey.channels.values(), of_speed, of_heading)
     if found is None or abs(found.value - 1.0) < max(OFF, SURE * found.sigma):

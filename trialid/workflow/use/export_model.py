@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from math import inf, radians
+from numbers import Real
 from pathlib import Path
 from typing import Final
 
@@ -47,10 +48,10 @@ def export_places(
     if kind not in KINDS:
         raise TrialidError(f"export: {kind!r} is no kind of file; {nearest(str(kind), KINDS)}")
     first = out or Path(f"{name}_{kind}{KINDS[kind].suffixes[0]}")
-    places = [first.with_suffix(suffix) for suffix in KINDS[kind].suffixes]
     words = ("--out ", "add --force") if by_command else ("out = ", "say force=True")
     formats = KINDS[kind].suffixes[:1]
-    check_place(first, replace=force, formats=formats, more=places[1:], words=words)
+    places = [first.with_suffix(x) for x in KINDS[kind].suffixes] if first.name else []
+    check_place(first, replace=force, formats=formats, more=places, words=words)
     return places
 
 
@@ -68,6 +69,10 @@ def wishes_of(
     TrialidError
         One is none.
     """
+    asked = {"bandwidth": bandwidth, "full_rudder": full_rudder, "full_command": full_command}
+    for name, value in asked.items():
+        if value is not None and (isinstance(value, bool) or not isinstance(value, Real)):
+            raise TrialidError(f"{name}={value!r}: expected a number")
     if full_rudder is not None and not 0.0 < full_rudder <= FULL:
         named = "--full-rudder" if by_command else "full_rudder"
         raise TrialidError(

@@ -6,6 +6,7 @@ from typing import Final
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.design.prediction.stopping import sail_stop
 from trialid.identification.remarks import untold_astern
+from trialid.names.wording import named_together
 from trialid.threads import one_thread
 from trialid.workflow.use.finished_model import FinishedModel
 from trialid.workflow.use.orders import Stop
@@ -19,8 +20,8 @@ from trialid.workflow.use.predict import (
 from trialid.workflow.use.what_if import AS_FITTED, WhatIf, changed_ship, known_changes
 
 OF_GAINS: Final = (
-    "No trial went astern: thrust astern is taken as 60 to 100 % of that ahead, and the ranges "
-    "embrace both; where it is known, state it: --what-if {}=..."
+    "No trial went astern: thrust astern is likely 60 to 100 % of that ahead, and the ranges "
+    "embrace both; what is known of {} is stated as a what-if."
 )
 
 
@@ -43,7 +44,8 @@ def predict_stop(model: FinishedModel, asked: Stop, what_if: WhatIf = AS_FITTED)
 
     made = with_words(model, asked.name, as_wide_as_others(model, sail), what_if)
     untold = [*_untold(model, what_if)] if asked.astern else []
-    return replace(made, words=(*made.words, OF_GAINS.format(untold[0]))) if untold else made
+    said = OF_GAINS.format(named_together(untold))
+    return replace(made, words=(*made.words, said)) if untold else made
 
 
 def _untold(model: FinishedModel, what_if: WhatIf) -> dict[str, str]:

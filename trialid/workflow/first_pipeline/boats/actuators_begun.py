@@ -9,9 +9,9 @@ from trialid.errors import LogError
 from trialid.inspection.own_scale import at_rest
 from trialid.ship.actuators import Actuator, Command, actuator_tables
 from trialid.ship.particulars import Ship
-from trialid.workflow.first_pipeline.boats.boat_choice import AFT, PORT, STARBOARD
+from trialid.workflow.first_pipeline.boats.boat_choice import PORT, STARBOARD
 from trialid.workflow.first_pipeline.boats.one_drive import DRIVE, HUNG, TURNED
-from trialid.workflow.first_pipeline.boats.turned_drives import ANGLE, FORE
+from trialid.workflow.first_pipeline.boats.turned_drives import AFT, ANGLE, FORE
 from trialid.workflow.first_pipeline.boats.unit_of_drive import unit_of_drive
 from trialid.workflow.first_pipeline.chosen import OPEN, Signal
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from trialid.inspection.channel_names import ORDERED
 from trialid.inspection.drives import (
+    ENDS,
     drives_by_end,
     drives_of,
     end_of,
@@ -21,6 +22,7 @@ from trialid.names.quantities import SIGNALS
 from trialid.workflow.first_pipeline.boats.one_drive import DRIVE
 from trialid.workflow.first_pipeline.boats.over_ground import with_velocity_over_ground
 from trialid.workflow.first_pipeline.boats.turned_drives import (
+    AFT,
     FORE,
     angle_signals,
     angles_of,
@@ -50,7 +52,6 @@ from trialid.workflow.first_pipeline.not_begun import no_speed_of_boat
 from trialid.workflow.first_pipeline.signed_speed import with_course
 
 PORT, STARBOARD = "thruster_port", "thruster_starboard"
-AFT: Final = "thruster_aft"
 BY_END: Final = Reason("fore or aft by its name; on the midships line, as her file has it")
 ASK_PORT: Final = Reason(
     "FILL IN the unit after settling which is to port: the motion does not tell", "asked"
@@ -116,7 +117,7 @@ def _two_drives(survey: Inspection) -> tuple[ChannelInspection, ...]:
 def _drive_signals(survey: Inspection, turn: Signal) -> list[Signal]:
     """Both drives as signals of a pipeline, their sides held against the turn."""
     port, starboard = _two_drives(survey)
-    if end_of(port.name):
+    if {end_of(port.name), end_of(starboard.name)} == {*ENDS}:
         return [_drive(AFT, port, BY_END), _drive(FORE, starboard, BY_END)]
     says = _agreement(port, starboard, turn)
     if not (has_side(port) or says.rests_on("measured")):

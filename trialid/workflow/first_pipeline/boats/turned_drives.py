@@ -23,8 +23,9 @@ ANGLE: Final = "_angle"
 
 CLOCKWISE: Final = "clockwise from ahead, as to starboard she turns to port by it"
 TO_PORT: Final = "positive to port, as she turns to starboard by it"
+AFT: Final = "thruster_aft"
 FORE: Final = "thruster_fore"
-"""The signal of a drive that stands ahead, of which the turn by it goes the other way."""
+"""Signals of a drive at either end; the turn by one that stands ahead goes the other way."""
 AHEAD: Final = "clockwise from ahead, as it stands fore and to starboard she turns to starboard"
 AHEAD_TO_PORT: Final = "positive to port, as it stands fore and she turns to port by it"
 OR_EXCHANGED: Final = "CAREFUL: or fore and aft are exchanged, which looks alike"
@@ -86,10 +87,10 @@ def _angles(survey: Inspection, drive: ChannelInspection) -> Iterator[ChannelIns
 
 
 def _whose(one: ChannelInspection) -> set[str]:
-    """Its side, or where it has none its end of the ship, or its number."""
+    """Its side, or where it has none its number, or its end of the ship."""
     end = end_of(one.name)
     numbers = {word for word in words(one.name) if word in ("1", "2")}
-    return sides(one.name) or ({end} if end else numbers)
+    return sides(one.name) or numbers or ({end} if end else set())
 
 
 def _is_angle(one: ChannelInspection) -> bool:
@@ -116,5 +117,5 @@ def _signal(drive: Signal, source: ChannelInspection, turn: Signal) -> Signal:
         taken="by its name",
         of_unit=of_unit,
         of_side=Reason(f"{sense}{told}", None if found is None else "measured"),
-        further=(OR_EXCHANGED,) if to_port and end_of(drive.source.name) else (),
+        further=(OR_EXCHANGED,) if to_port and drive.quantity in (AFT, FORE) else (),
     )
