@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import random
 import tomllib
 from pathlib import Path
@@ -119,6 +120,16 @@ def test_what_cannot_be_is_one_line(recipe: Pipeline, wish: Any, words: tuple[st
 def test_what_is_no_wish_is_refused(asked: object) -> None:
     with pytest.raises(TrialidError):
         read_wish(asked)
+
+
+def test_the_copy_in_a_run_s_folder_is_what_ran(recipe: Pipeline, tmp_path: Path) -> None:
+    """Refused when the edit is asked for, and not after it was fitted."""
+    stood = os.path.relpath(recipe.path, tmp_path)
+    (tmp_path / "run.json").write_text(json.dumps({"pipeline": stood}), encoding="utf-8")
+    copy = read(recipe.content, tmp_path / "pipeline.toml")
+    with pytest.raises(TrialidError, match="is what a finished run was made from"):
+        ask(copy, "drop", effect=copy.model.effects[-1])
+    assert ask(recipe, "drop", effect=recipe.model.effects[-1]).edit is not None
 
 
 def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Pipeline) -> None:

@@ -18,6 +18,7 @@ from pydantic import (
 from trialid.errors import PipelineError, TrialidError, nearest
 from trialid.pipeline_file import Pipeline, read
 from trialid.pipeline_file.edit import fix_parameter, set_bounds, set_free, set_use, set_value
+from trialid.pipeline_file.rewrite import check_is_no_copy
 from trialid.ship.model import ShipModel
 from trialid.workflow.build_model import available, build_model, check_bounds, settings_of
 from trialid.workflow.edit_pipeline import Edit, add_to_pipeline, drop_from_pipeline
@@ -124,6 +125,7 @@ def grant(pipeline: Pipeline, wish: Any) -> Granted:
     TrialidError
         In one line: what cannot be, and why.
     """
+    check_is_no_copy(pipeline.path)
     found = _GRANTS[type(wish)](pipeline, wish)
     if found.after.content == pipeline.content:
         raise PipelineError(f"{found.words}: it is so already")
