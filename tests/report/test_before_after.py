@@ -98,6 +98,19 @@ def test_side_by_side_fits_a_terminal(changed, width):
         assert part in words
 
 
+@pytest.mark.parametrize(
+    ("after", "said"),
+    [(0.305, "does not fall"), (0.2999, "hardly falls"), (0.29, None)],
+)
+def test_of_what_changes_nothing_no_trial_speaks(changed, after, said):
+    """An outsider's useless effect took 5.040 % to 5.039, and no word was said."""
+    run = copy.deepcopy(changed)
+    run["change"]["eps_rmsn_check"] = [0.3, after]
+    words = " ".join(shown(run).split())
+    assert (f"; the held-out error {said}: no trial speaks for this effect" in words) is bool(said)
+    assert ("no trial speaks" in words) is bool(said)
+
+
 def test_a_long_history_shows_its_end():
     step = StepRow(step="added", added="x", eps_rmsn=0.1, verdict="cannot tell")
     run = Result(history=tuple(replace(step, added=f"e{k}") for k in range(20)))

@@ -6,6 +6,7 @@ from functools import partial
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
+from trialid.diagnosis.search.carried import FALL
 from trialid.names import labels, wording
 from trialid.report.pictures.bars import foreseen_in_errors
 from trialid.report.terminal import steps
@@ -111,8 +112,9 @@ def _verdicts(change: ChangePart) -> str:
         for kind, name in pairs
     )
     before, after = change.eps_rmsn_check or (None, None)
-    if change.step == "added" and before and after and after >= before:
-        words += "; the held-out error does not fall: no trial speaks for this effect"
+    if change.step == "added" and before and after and after**2 > FALL * before**2:
+        falls = "hardly falls" if after < before else "does not fall"
+        words += f"; the held-out error {falls}: no trial speaks for this effect"
     return words
 
 
