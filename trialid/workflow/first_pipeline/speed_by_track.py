@@ -66,32 +66,36 @@ def held_against_track(trial: Chosen) -> Chosen:
         return trial
     psi = next((one for one in trial.signals if one.quantity == "psi"), None)
     signals = (
-        _measured(_warned(one, sailed), psi, trial.survey) if one.quantity == "u" else one
+        _warned(one, sailed, psi, trial.survey) if one.quantity == "u" else one
         for one in trial.signals
     )
     return dataclasses.replace(trial, signals=tuple(signals))
 
 
-def _measured(speed: Signal, psi: Signal | None, survey: Inspection) -> Signal:
-    """A speed with the factor that her positions say is on it, where she turns and it is one.
+def _warned(speed: Signal, sailed: float, psi: Signal | None, survey: Inspection) -> Signal:
+    """The speed, with what its median says, or where that is about right what her turns say."""
+    told = _by_median(speed, sailed) or _by_turns(speed, psi, survey)
+    return dataclasses.replace(speed, further=(*speed.further, *told))
+
+
+def _by_turns(speed: Signal, psi: Signal | None, survey: Inspection) -> tuple[str, ...]:
+    """The factor that her positions say is on a speed log, where she turns and it is one.
 
     Of one through the water by its name: over the ground a current is in the log and in the ways.
     """
-    doubted = any("positions are sailed at" in words for words in speed.further)
-    if doubted or speed.others or not is_through_water(speed.source.name):
-        return speed
+    if speed.others or not is_through_water(speed.source.name):
+        return ()
     of_speed, of_heading = _in_si(speed, "m/s"), _in_si(psi, "rad") if psi else None
     if of_speed is None or of_heading is None:
-        return speed
+        return ()
     found = log_factor(survey.channels.values(), of_speed, of_heading)
     if found is None or abs(found.value - 1.0) < max(OFF, SURE * found.sigma):
-        return speed
-    told = (
+        return ()
+    return (
         f"CAREFUL: by her positions she goes {found.value:.3f} +-{found.sigma:.3f} times as fast, "
         f"a current taken out while she turns by {np.degrees(found.turned):.0f} deg; where the "
-        f"speed log is off, gain = {found.value:.3f} mends it, in each trial that it is in"
+        f"speed log is off, gain = {found.value:.3f} mends it, in each trial that it is in",
     )
-    return dataclasses.replace(speed, further=(*speed.further, told))
 
 
 def _in_si(signal: Signal, unit: str) -> Sketch | None:
@@ -103,15 +107,15 @@ def _in_si(signal: Signal, unit: str) -> Sketch | None:
     return dataclasses.replace(signal.source.sketch, y=side * size * signal.source.sketch.y)
 
 
-def _warned(speed: Signal, sailed: float) -> Signal:
+def _by_median(speed: Signal, sailed: float) -> tuple[str, ...]:
+    """That it is at quite another speed than her positions, by the usual one of both."""
     size = to_si(speed.unit or "", "m/s")
     y = speed.source.sketch.y
     usual = float(np.median(np.abs(y))) * size if size is not None and len(y) else 0.0
     if not usual:
-        return speed
+        return ()
     ratio = sailed / usual
-    told = speeds_apart(ratio, f"CAREFUL: her positions are sailed at {ratio:.2f} times its median")
-    return dataclasses.replace(speed, further=(*speed.further, *told))
+    return speeds_apart(ratio, f"CAREFUL: her positions are sailed at {ratio:.2f} times its median")
 
 
 def with_doubtful_speeds(trials: Sequence[Chosen], length: float) -> list[Chosen]:
