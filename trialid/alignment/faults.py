@@ -271,11 +271,13 @@ def _turns_otherwise(rate: Series, heading: Series, ends: tuple[int, int]) -> bo
     went = np.append(0.0, np.cumsum(0.5 * (r.y[1:] + r.y[:-1]) * np.diff(r.t)))
     k, after = (int(x / (end - begin) + 1e-9) for x in (begin - r.t[0], r.t[-1] - begin))
     at = begin + (end - begin) * np.arange(-k, after + 1)  # as long times before and after
-    turned = np.interp(at, psi.t + (int(heading.t[0]) - int(rate.t[0])) / 1e9, psi.y)
+    shift = (int(heading.t[0]) - int(rate.t[0])) / 1e9
+    # where no heading is recorded nothing is said of it
+    turned = np.interp(at, psi.t + shift, psi.y, left=np.nan, right=np.nan)
     apart = np.abs(np.diff(turned - np.interp(at, r.t, went)))
-    if not k < len(apart) > ENOUGH:
+    if k >= len(apart) or np.isfinite(apart).sum() <= ENOUGH:
         return False
-    return bool(apart[k] > max(OTHERWISE, FAR * np.median(np.delete(apart, k))))
+    return bool(apart[k] > max(OTHERWISE, FAR * np.nanmedian(np.delete(apart, k))))
 
 
 def _lively(series: Series, ends: tuple[int, int]) -> bool:

@@ -49,6 +49,16 @@ def test_it_is_masked_though_the_heading_spreads_by_far_more_elsewhere():
     assert find_stuck((rate, heading), 0, Grid(0, PERIOD, len(T))) is None
 
 
+def test_of_a_heading_that_ends_before_nothing_is_said():
+    """She is not taken to lie still where no compass was recorded."""
+    rate, heading, ends = frozen(660.0)
+    ended = np.where(T < 650.0, heading.y, np.nan)
+    assert not _turns_otherwise(rate, Series(heading.quantity, heading.t, ended, "t"), ends)
+    begun = np.where(T > 650.0, heading.y, np.nan)
+    rate, _, ends = frozen(500.0)
+    assert not _turns_otherwise(rate, Series(heading.quantity, heading.t, begun, "t"), ends)
+
+
 def test_of_a_heading_without_samples_nothing_is_said():
     rate, heading, ends = frozen(180.0)
     blind = Series(heading.quantity, heading.t, np.full(len(T), np.nan), heading.clock)
