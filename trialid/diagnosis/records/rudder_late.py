@@ -1,8 +1,9 @@
 """Whether the rudder is recorded late: all that it moves comes before it, by about the same.
 
 No sensor is early. A hull that answers sooner than the model lets it may make the rate of turn so,
-and hardly the roll, which the rudder itself sets off; of an outsider's ship whose feedback lagged
-by 2 and 3 s both came 1.8 s early, and what they lacked was called the lever of an inclinometer.
+and hardly the roll, which the rudder itself sets off. Of an outsider's ship whose feedback lagged
+by 2 and 3 s both came 1.1 to 1.9 s early, and the rest of that lag was called the lever of an
+inclinometer.
 """
 
 from typing import Final
