@@ -12,7 +12,7 @@ from trialid.effects.actuators import actuator_effects
 @pytest.mark.parametrize("kept", [0.0, 0.5, 0.8])
 def test_what_is_weak_keeps_its_share_of_the_force(kept: float) -> None:
     """Whatever drives it: also where the thrust goes with the square."""
-    for name in ("left", "pod", "jet", "bow", "rudder_port"):
+    for name in ("left", "jet", "bow", "rudder_port"):
         push = next(e for e in EFFECTS.values() if name in e.signals and e.name.endswith("s"))
         at = values(push, 3)
         [moved] = EFFECTS[f"{name}_weak"]({name: at[name], f"weak_{name}": 1.0 - kept})
@@ -20,6 +20,15 @@ def test_what_is_weak_keeps_its_share_of_the_force(kept: float) -> None:
         whole, less = push(at)[0], push(at | {name: at[name] + moved[name]})[0]
         expected = [c + kept * (b - c) for b, c in zip(whole, still, strict=True)]
         assert list(less) == pytest.approx(expected, rel=1e-6, abs=1e-4 * abs(whole.N))
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.5, 0.8])
+def test_what_is_weak_of_a_share_of_full_keeps_that_share_of_it(kept: float) -> None:
+    """With which power of it the thrust goes nobody knows: a motor's voltage is no revolutions."""
+    [moved] = EFFECTS["pod_weak"]({"pod": 0.6, "weak_pod": 1.0 - kept})
+    assert 0.6 + moved["pod"] == pytest.approx(0.6 * kept)
+    assert "share of full of pod times 1 - weak_pod" in EFFECTS["pod_weak"].equation
+    assert "force of left times 1 - weak_left" in EFFECTS["left_weak"].equation
 
 
 @pytest.mark.parametrize(("name", "square"), [("left", True), ("bow", True), ("jet", False)])

@@ -44,7 +44,7 @@ def test_missing_values_at_both_ends_are_gaps():
 def test_duplicates_and_steps_back():
     t = np.concatenate([T[:1000], T[990:]])
     found = remarks_on(t, swing)
-    assert "r: time steps back 1 times, by up to 0.9 s; sorted" in found
+    assert "r: time steps back 1 time, by up to 0.9 s; sorted" in found
     assert "r: 10 samples with the stamp of another one dropped" in found
 
 

@@ -8,6 +8,8 @@ RECORDERS = {
     "harbour/@v0/s175q/pubsub/rudder_angle_deg/steering_gear:value": "delta",
     "harbour/@v0/s175q/pubsub/yaw_rate_degps/gyro:value": "r",
     "gyro_z": "r",
+    "yawrate_rad": "r",
+    "yaw_rate_deg": "r",
     "compass": "psi",
     "Rel wind speed": "V_aw",
     "rel_wind_dir": "gamma_aw",
@@ -185,6 +187,9 @@ def test_every_phrase_leads_to_its_quantity():
 def test_a_gyro_in_rps_is_in_doubt_and_a_shaft_is_not():
     assert channel_names.unit_in_name("gyro_z_rps") is None
     assert channel_names.unit_in_name("yaw_rate_rps") is None
+    assert channel_names.unit_in_name("yaw_rate_rad") == "rad/s"
+    assert channel_names.unit_in_name("roll_rate_deg") is None
+    assert channel_names.unit_in_name("roll_deg") == "deg"
     assert channel_names.unit_in_name("shaft_rps") == "rps"
 
 

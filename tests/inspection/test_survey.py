@@ -93,7 +93,7 @@ def test_a_clock_that_steps_back_jitters_and_drifts_says_so(recorded):
     assert clock.jitter == pytest.approx(np.std(np.diff(t)), rel=0.01)
     assert clock.received.drift == pytest.approx(1e-3, rel=0.01)
     assert clock.received.offset == pytest.approx(0.25 + 0.1, abs=0.01)
-    assert any("steps back 1 times" in words for words in found.warnings)
+    assert any("steps back 1 time" in words for words in found.warnings)
     assert any("drifts by 1e+03 ppm" in words for words in found.warnings)
 
 

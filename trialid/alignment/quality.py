@@ -46,7 +46,7 @@ TURN = (2, 3, 4)
 
 def steps_back(count: int, largest: float) -> str:
     """How often a clock steps back and how far at most [s], in a clause."""
-    words = f"time steps back {count} times, by up to {largest:.4g} s"
+    words = f"time steps back {wording.count_of(count, 'time')}, by up to {largest:.4g} s"
     if abs(largest - HOUR_S) > ABOUT_S:
         return words
     return f"{words} (a local clock set back by an hour, whose samples mix? cut the log there)"

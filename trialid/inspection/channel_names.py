@@ -13,6 +13,7 @@ from trialid.inspection.name_words import (
     bare_words,
     drop_number,
     sides,
+    unit_of_rate,
     without_side,
     without_unit,
     words,
@@ -239,9 +240,9 @@ def unit_in_name(name: str) -> str | None:
         return field[0]
     for count in (2, 1):
         if len(field) > count and (unit := UNITS_IN_NAMES.get(" ".join(field[-count:]))):
-            rate = unit == "rps" and _longest(field) in ("r", "p")
-            late = field[-1] == "ms" and not _is_speed(field[:-1])  # milliseconds
-            return None if rate or late else unit  # of a gyro it is rad/s to robots
+            if _longest(field) in ("r", "p"):
+                return unit_of_rate(unit, field)
+            return None if field[-1] == "ms" and not _is_speed(field[:-1]) else unit  # milliseconds
     return None
 
 

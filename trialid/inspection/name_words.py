@@ -94,6 +94,17 @@ def without_unit(field: Sequence[str]) -> Sequence[str]:
     return field
 
 
+def unit_of_rate(unit: str, field: Sequence[str]) -> str | None:
+    """The unit of a rate: of `rps` it is rad/s to robots; degrees may be by second or minute.
+
+    >>> unit_of_rate("rad", ("yaw", "rate", "rad")), unit_of_rate("deg", ("yaw", "rate", "deg"))
+    ('rad/s', None)
+    """
+    if unit in ("rad", "deg") and any(word.endswith("rate") for word in field):
+        return "rad/s" if unit == "rad" else None
+    return None if unit == "rps" else unit
+
+
 def sides(name: str) -> set[str]:
     """The sides that a name says, as shafts have them; a `P` or `S` at its end says one too.
 

@@ -97,3 +97,13 @@ def test_an_effect_of_the_sensor_settles_it(fit: Fit, sensor: str) -> None:
     beside = (s175q.MODEL + effect).with_values(typical)
     again = identify([s175q.zigzag(5), s175q.zigzag(10)], beside, SETTINGS)
     assert not in_doubt(replace(again, scores=late.scores))
+
+
+def test_a_trial_held_out_is_asked_by_its_name(fit: Fit) -> None:
+    """An outsider's gyro read 1.08 of the heading's slope there, and no word was said of it."""
+    found = with_contradictions(fit, (), (LATE,))
+    held = replace(found.scores[1], trial=replace(found.scores[1].trial, use="check"))
+    found = replace(found, scores=(found.scores[0], held))
+    assert rate_in_doubt(found) is None
+    assert rate_in_doubt(found, held="zigzag-10") == "in zigzag-10 r comes 6 s later"
+    assert rate_in_doubt(found, held="zigzag-5") is None

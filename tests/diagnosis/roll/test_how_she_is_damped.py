@@ -58,7 +58,7 @@ def test_a_swing_let_go_may_die_away_slowly_but_a_swell_goes_on(ratio, hers):
     assert (said(fit) == []) == hers
 
 
-@pytest.mark.parametrize("times", [12.0, 18.0])
+@pytest.mark.parametrize("times", [pytest.param(12.0, marks=pytest.mark.study(turn="each")), 18.0])
 def test_a_ship_with_fins_tells_gm_where_her_zig_zags_do(times):
     """Damped by half of what is critical, and by most of it."""
     her = MODEL.with_values({"Kp": times * MODEL.value("Kp")})

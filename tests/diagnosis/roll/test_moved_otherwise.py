@@ -58,7 +58,14 @@ def said_of(before: Fit, found: Refit) -> Verdict:
     return decide(before, [found.candidate], [found], split, None, 0.05)
 
 
-@pytest.mark.parametrize(("size", "beside"), [(0.0, ()), (0.3, ()), (1.2, ("phi",))])
+@pytest.mark.parametrize(
+    ("size", "beside"),
+    [
+        pytest.param(0.0, (), marks=pytest.mark.study(turn="each")),
+        (0.3, ()),
+        (1.2, ("phi",)),
+    ],
+)
 def test_an_effect_of_the_yaw_has_a_name_where_the_roll_is_explained(size, beside) -> None:
     before, after = fitted(LACKS, size), fitted(s175q.MODEL, size)
     found = refitted(before, after)

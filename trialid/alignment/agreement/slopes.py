@@ -126,7 +126,8 @@ def _small_faults(
     off = low > FAIR or high < 1 / FAIR
     if not is_clear(found) or not (late or off):
         return
-    pair, times = (rate, angle), f"is {low:.3g} to {high:.3g} times"
+    ends = dict.fromkeys(f"{end:.3g}" for end in found.gain)
+    pair, times = (rate, angle), f"is {' to '.join(ends)} times"
     comes = (
         f"{rate} comes {abs(found.lag):.2g} s {'later' if found.lag > 0 else 'earlier'} than "
         f"the slope of {angle} ({found.lags[0]:.2g} to {found.lags[1]:.2g} s)"

@@ -5,21 +5,21 @@ cannot be followed, and without it they can. A model that only lacks a force los
 trial, unless she did in that what she does in no other; such a trial contradicts nothing.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 
-from trialid.diagnosis.noise.excitation import is_driven
+from trialid.diagnosis.records.further import is_no_further, left_of_each, stands_out
 from trialid.diagnosis.records.left_without import OTHERS, falls_without
+from trialid.diagnosis.records.own_gain import gain_in_doubt, held_gain_in_doubt
+from trialid.diagnosis.records.rate_and_angle import rate_in_doubt
 from trialid.diagnosis.search.refit import Refit
 from trialid.diagnosis.search.together import Together
 from trialid.diagnosis.verdict import NAMED, Verdict
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
-from trialid.simulation.integrate import record_for
-from trialid.trial import Trial
 
 FALL: Final = 0.5
 """Share of the squared error of the others that goes without it, of those held out too. Of 24 sets
@@ -32,15 +32,6 @@ APART: Final = 3.0
 """Times what is left of any other, in one held out that is told: of such sets 9 of 12, by 3.3 to
 8.2, of 24 of one ship's 1.3 at most, of the tanker's and the pond's 2.7 and 1.9. Half of it finds
 11 and looks at 8 of the 66, twice finds 4."""
-
-FURTHER: Final = 1.1
-"""Times what drives her in the others, or her speed, from which on she does there what she does in
-none of them. Of the tanker's trials the largest lowers the error of the others by up to 0.65. Half
-as far beyond 1 and twice find the same 8 of the 24, and none that is no other ship's."""
-
-MOVES: Final = 2.0
-"""Times what she moves by in the others, from which on it is the same. With 1.5 one of the 8 is
-missed, with 3 none."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +71,7 @@ class Contradicting:
     @property
     def stays(self) -> bool:
         """Whether it is followed no better for being fitted."""
-        left = _left(self.beside)
+        left = left_of_each(self.beside)
         return left[self.trial] >= 0.5 * APART * _most(left, _others(self.beside, self.trial))
 
     def is_explained_by(self, named: Fit) -> bool:
@@ -95,7 +86,7 @@ class Contradicting:
     @property
     def sentence(self) -> str:
         """What was seen, and what it may be."""
-        left, out = _left(self.alone), self.fall_of_held
+        left, out = left_of_each(self.alone), self.fall_of_held
         both = "" if out is None else f" and of those held out by {out:.0%}"
         loses = f"without it their squared error falls by {self.fall:.0%}{both}, and "
         return (
@@ -109,20 +100,17 @@ class Contradicting:
 def settle_trials(fit: Fit, verdict: Verdict, named: Fit | None) -> Verdict:
     """The verdict; where a fitted trial contradicts the others, that, and nothing is named.
 
-    But where the effect does as much for the others as leaving it out, and none contradicts the
-    model with it.
-
-    Parameters
-    ----------
-    named
-        The fit with what is to be named, where anything is.
+    A factor of one of its logs comes first: it says what of it does. But where the effect does as
+    much for the others as leaving it out, and none contradicts the model with it.
     """
     if verdict.doubts:
         return verdict
+    if gain := gain_in_doubt(fit.examined, named.examined if named else None):
+        return _in_doubt(gain)
     found = contradicting_trial(fit.examined)
     if named and (found is None or found.is_explained_by(named.examined)):
         found = contradicting_trial(named.examined)
-    return verdict if found is None else _in_doubt(found)
+    return verdict if found is None else _in_doubt(found.sentence)
 
 
 def settle_held_out(fit: Fit, verdict: Verdict, named: Refit | Together | None) -> Verdict:
@@ -132,17 +120,29 @@ def settle_held_out(fit: Fit, verdict: Verdict, named: Refit | Together | None) 
     """
     if verdict.doubts or verdict.kind == "no fit":
         return verdict
-    found = contradicting_held_out((named.fit if named else fit).examined)
-    if found is None:
+    judged = (named.fit if named else fit).examined
+    if (seen := _held_out_in_doubt(judged)) is None:
         return verdict
     if verdict.effect or verdict.family or verdict.together:
-        return replace(verdict, sentence=f"{verdict.sentence}; {found.sentence}")
-    return _in_doubt(found)
+        return replace(verdict, sentence=f"{verdict.sentence}; {seen}")
+    return _in_doubt(seen)
 
 
-def _in_doubt(found: Contradicting) -> Verdict:
-    said = f"{found.sentence}; until that is settled no effect is named"
-    return Verdict("cannot tell", None, (), said, doubts=(found.sentence,))
+def _held_out_in_doubt(fit: Fit) -> str | None:
+    """What the trial held out that stands out most contradicts; None where none does clearly."""
+    left = left_of_each(fit)
+    held = [t.name for t in fit.trials if t.use == "check"]
+    worst = max(held, key=lambda name: left[name], default=None)
+    if worst is None or not stands_out(fit, worst):
+        return None
+    seen = rate_in_doubt(fit, held=worst) or held_gain_in_doubt(fit, worst)
+    found = None if seen else contradicting_held_out(fit)
+    return found.sentence if found else seen
+
+
+def _in_doubt(seen: str) -> Verdict:
+    said = f"{seen}; until that is settled no effect is named"
+    return Verdict("cannot tell", None, (), said, doubts=(seen,))
 
 
 def contradicting_trial(fit: Fit) -> Contradicting | None:
@@ -151,17 +151,17 @@ def contradicting_trial(fit: Fit) -> Contradicting | None:
     Slopes foretell by how much the error of the others falls without it; a fit has to agree.
     """
     falls = falls_without(fit)
-    able = [n for n in _fitted(fit) if falls.get(n, 0.0) >= FALL and _is_no_further(fit, n)]
+    able = [n for n in _fitted(fit) if falls.get(n, 0.0) >= FALL and is_no_further(fit, n)]
     tried = (_told(fit, name) for name in sorted(able, key=lambda n: -falls[n]))
     return next((found for found in tried if found is not None and found.falls), None)
 
 
 def contradicting_held_out(fit: Fit) -> Contradicting | None:
     """The trial held out that is foretold worst, where it stays so when it is fitted, too."""
-    left, fitted = _left(fit), _fitted(fit)
+    left, fitted = left_of_each(fit), _fitted(fit)
     most = APART * max(left[n] for n in fitted)
     able = [t.name for t in fit.trials if t.use == "check" and left[t.name] >= most]
-    within = [n for n in able if len(fitted) >= OTHERS and _is_no_further(fit, n)]
+    within = [n for n in able if len(fitted) >= OTHERS and is_no_further(fit, n)]
     found = _told(fit, max(within, key=lambda n: left[n])) if within else None
     return found if found and found.stays else None
 
@@ -188,13 +188,6 @@ def _others(fit: Fit, name: str) -> list[str]:
     return [t.name for t in fit.problem.trials if t.name != name]
 
 
-def _left(fit: Fit) -> dict[str, float]:
-    """Error of each trial over its outputs, by what moved in all that are fitted."""
-    return {
-        s.trial.name: float(np.sqrt(np.mean(np.square([*s.eps_rmsn.values()])))) for s in fit.scores
-    }
-
-
 def _most(left: Mapping[str, float], names: Sequence[str]) -> float:
     return max(left[n] for n in names)
 
@@ -213,32 +206,3 @@ def _squares(fit: Fit, names: Sequence[str]) -> float:
             moved = np.mean([np.var(s.trial.signals[c]) for s in fit.scores if c in s.eps_rmsn])
             whole += (eps * fit.problem.y_rms[outputs.index(c)]) ** 2 * score.counts[c] / moved
     return float(whole)  # of one that is lost it is endless, and proves nothing
-
-
-def _is_no_further(fit: Fit, name: str) -> bool:
-    """Whether she is driven no further in a trial than in the others, nor faster, nor slower.
-
-    Let go, she swings no further; and in no trial as many times as far as `MOVES`.
-    """
-    inputs = [n for n in fit.problem.simulator.equations.inputs if n != "u"]
-    trial = next(t for t in fit.trials if t.name == name)
-    others = [t for t in fit.problem.trials if t.name != name]
-    asked = inputs if is_driven(inputs, [trial]) else fit.problem.outputs
-    return (
-        all(_share(trial, others, n) <= FURTHER for n in asked)
-        and all(_share(trial, others, n) <= MOVES for n in fit.problem.outputs)
-        and _share(trial, others, "u", min) * FURTHER >= 1.0
-        and _share(trial, others, "u") <= FURTHER
-    )
-
-
-def _share(
-    trial: Trial, others: Sequence[Trial], name: str, of: Callable[[list[float]], float] = max
-) -> float:
-    """How far a signal goes in a trial, in what it does in others; 1 where one has no record."""
-    kept = [record_for(t, name) for t in (trial, *others)]
-    most = [
-        float(np.abs(t.signals[n]).max()) for t, n in zip((trial, *others), kept, strict=True) if n
-    ]
-    whole = of(most[1:]) if all(kept) else 0.0
-    return most[0] / whole if whole > 0.0 else 1.0

@@ -53,8 +53,13 @@ def fault_effects(ship: Ship, ordered: Collection[str]) -> Iterator[Effect]:
 
 
 def _scaled(one: Actuator, parameter: str) -> Callable[..., Steered]:
-    """The signal scaled so that the force is 1 - parameter of what it was."""
-    square = one.kind != "rudder" and one.command != "thrust"
+    """The signal scaled so that the force is 1 - parameter of what it was; of a share the share.
+
+    Of revolutions thrust goes with the square. Of a share of full nobody knows with which power of
+    it: an outsider's boat whose thrust goes with the share itself had one thruster weak by 0.51
+    where 0.30 of its force was lost.
+    """
+    square = one.command == "revolutions" and one.kind != "rudder"
 
     def scale(**values: Number) -> Steered:
         left = 1.0 - values[parameter]
@@ -64,11 +69,17 @@ def _scaled(one: Actuator, parameter: str) -> Callable[..., Steered]:
     return scale
 
 
+def _what(one: Actuator) -> str:
+    """What of it is scaled."""
+    of_force = one.kind == "rudder" or one.command != "share"
+    return f"{'force' if of_force else 'share of full'} of {one.name}"
+
+
 def _weak(one: Actuator) -> Effect:
     return make_effect(
         _scaled(one, f"weak_{one.name}"),
         name=f"{one.name}_weak",
-        equation=f"force of {one.name} times 1 - weak_{one.name}: weak, dead at 1",
+        equation=f"{_what(one)} times 1 - weak_{one.name}: weak, dead at 1",
         source=SOURCE,
         signals=[one.name],
         parameters={f"weak_{one.name}": Parameter(0.2, low=0.0, high=1.0, by_meaning=True)},
@@ -79,7 +90,7 @@ def _reversed(one: Actuator) -> Effect:
     return make_effect(
         _scaled(one, f"reversed_{one.name}"),
         name=f"{one.name}_reversed",
-        equation=f"force of {one.name} times 1 - reversed_{one.name}: the other way round at 2",
+        equation=f"{_what(one)} times 1 - reversed_{one.name}: the other way round at 2",
         source=SOURCE,
         signals=[one.name],
         parameters={f"reversed_{one.name}": _REVERSED},

@@ -9,7 +9,7 @@ from trialid.names import wording
 from trialid.names.quantities import MOTIONS
 from trialid.report.words import doubt
 from trialid.result.schema import Result
-from trialid.toml_text import array
+from trialid.toml_text import quote
 
 RIVALS: Final = 2
 """Other members of the family whose command is written out."""
@@ -228,10 +228,10 @@ def _unclear(run: Result) -> Iterable[Advice]:
         return
     if held := run.verdict.held_as_well:
         yield Advice(
-            f"Under [identify] free {wording.count_of(len(held), 'number')} as well, held about "
-            'her file by priors = "ship", and run again; so does `trialid run --auto` where these '
-            "priors are there already:",
-            f"free = {array([*run.model.free, *held])}",
+            f"Add {wording.count_of(len(held), 'number')} to [identify] free, about her file "
+            'by priors = "ship", and run again; `trialid run --auto` does so where they '
+            "are there, and keeps them where no held-out error rises:",
+            ", ".join(map(quote, held)),
         )
         return
     yield from _one_of(run)

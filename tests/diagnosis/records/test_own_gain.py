@@ -1,0 +1,144 @@
+"""One trial whose log reads by another factor: that is said, and no force has its name."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import s175q
+
+from trialid.diagnosis.records import own_gain
+from trialid.diagnosis.records.contradicting_trial import settle_held_out, settle_trials
+from trialid.diagnosis.records.own_gain import (
+    Factor,
+    gain_in_doubt,
+    held_gain_in_doubt,
+    left_of,
+    own_gains,
+)
+from trialid.diagnosis.verdict import Verdict
+from trialid.effects import CATALOGUE
+from trialid.identification.fit import Fit, identify
+
+NAMED = Verdict("missing", "rudder_stall", ("rudder_stall",), "rudder_stall is missing")
+SETTINGS = replace(s175q.SETTINGS, free=("Nv", "Nr", "Ndelta", "Yv", "Kdelta"))
+CUBIC = CATALOGUE["rudder_cubic"]
+STALLS = (s175q.MODEL + CUBIC).with_values({"Yddd": 0.0, "Nddd": -s175q.MODEL.value("Ndelta")})
+CALM = dict.fromkeys(CATALOGUE["steady_wind"].parameters, 0.0)
+
+
+def fitted(signal="", by=1.0, *, model=s175q.MODEL, of="zigzag-10", held="zigzag-5", n=4) -> Fit:
+    """Zig-zags of 20, 10, 5 and 2 deg; in one of them a log reads what is true times a factor."""
+    rng, made = np.random.default_rng(23), []
+    for angle in (20, 10, 5, 2)[:n]:
+        trial = s175q.zigzag(angle, model)
+        trial = s175q.with_noise(trial, *(0.3 * x for x in s175q.white(rng, trial.samples)))
+        trial = replace(trial, use="check" if trial.name == held else "fit")
+        [made_so] = Factor(of, signal, by).taken([trial]) if signal else [trial]
+        made.append(made_so)
+    return identify(made, s175q.MODEL, SETTINGS)
+
+
+@pytest.fixture(scope="module")
+def indicator() -> Fit:
+    """Of 10 deg the rudder's indicator shows 11.5."""
+    return fitted("delta", 1.15)
+
+
+@pytest.fixture(scope="module")
+def as_it_is() -> Fit:
+    return fitted()
+
+
+@pytest.mark.parametrize(("signal", "by"), [("delta", 0.9), ("r", 1.1), ("phi", 1.2)])
+def test_the_trial_and_its_sensor_are_found_with_the_factor_that_mends_it(signal, by) -> None:
+    best = own_gains(fitted(signal, by))[0].factor
+    assert (best.trial, best.signal) == ("zigzag-10", signal)
+    assert best.by == pytest.approx(1.0 / by, rel=0.02)
+
+
+def test_nothing_is_named_before_it_is_settled(indicator: Fit) -> None:
+    """A stranger's speed log, 12 % high in one run, was called a rudder that stalls."""
+    said = settle_trials(indicator, NAMED, None)
+    assert (said.kind, said.effect, said.family) == ("cannot tell", None, ())
+    assert said.doubts[0].startswith(
+        "zigzag-10 reads otherwise than the others: with its delta times 0.87 the error falls from"
+    )
+    assert said.doubts[0].count("on held-out trials from") == 1
+    assert said.sentence.endswith("until that is settled no effect is named")
+
+
+def test_the_error_falls_once_the_trial_has_that_gain(indicator: Fit, as_it_is: Fit) -> None:
+    """To that of a record that was never wrong."""
+    [best, *_] = own_gains(indicator)
+    mended = identify(best.factor.taken(indicator.trials), s175q.MODEL, SETTINGS)
+    assert indicator.eps_rmsn > 1.4 * as_it_is.eps_rmsn
+    assert mended.eps_rmsn == pytest.approx(as_it_is.eps_rmsn, rel=0.02)
+    assert mended.eps_check == pytest.approx(as_it_is.eps_check, rel=0.05)
+    assert gain_in_doubt(mended) is None
+
+
+def test_of_records_that_read_alike_nothing_is_said(as_it_is: Fit) -> None:
+    assert own_gains(as_it_is) == []
+    assert gain_in_doubt(as_it_is) is None
+    assert settle_held_out(as_it_is, NAMED, None) is NAMED
+    assert settle_trials(as_it_is, NAMED, None) is NAMED
+
+
+def test_a_force_at_large_angles_is_no_gain_of_the_one_trial_that_has_them(monkeypatch) -> None:
+    """Most of it is in the 20 deg, which no other trial has: there a factor does as much."""
+    fit = fitted(model=STALLS)
+    assert own_gains(fit) == []
+    monkeypatch.setattr(own_gain, "is_no_further", lambda fit, name: True)
+    assert own_gains(fit)[0].factor.trial == "zigzag-20"
+
+
+def test_an_effect_that_leaves_as_little_keeps_its_name(indicator: Fit) -> None:
+    best = own_gains(indicator)[0]
+    named = replace(best.fit)  # as if an effect had taken as much off
+    assert gain_in_doubt(indicator, named) is None
+    assert gain_in_doubt(indicator, indicator) is not None
+
+
+def test_a_trial_held_out_is_told_too() -> None:
+    """As the others have it she is foretold badly, and with that factor as well as they are."""
+    fit = fitted("delta", 1.3, held="zigzag-10")
+    said = held_gain_in_doubt(fit, "zigzag-10")
+    assert said is not None
+    assert said.startswith("zigzag-10 reads otherwise than the others: fitted beside them with its")
+    assert " delta times 0.768 " in said
+    settled = settle_held_out(fit, Verdict("nothing missing", None, (), "nothing"), None)
+    assert (settled.kind, settled.doubts) == ("cannot tell", (said,))
+    beside = settle_held_out(fit, NAMED, None)
+    assert (beside.effect, beside.sentence) == ("rudder_stall", f"{NAMED.sentence}; {said}")
+
+
+def test_of_two_trials_nobody_knows_which_reads_wrong() -> None:
+    assert own_gains(fitted("delta", 1.15, held="", n=2)) == []
+
+
+def test_what_is_left_of_a_log_that_was_multiplied_counts_as_it_was_recorded(as_it_is: Fit) -> None:
+    """Else the smallest factor would leave least."""
+    factor = Factor("zigzag-10", "r", 0.5)
+    half = identify(factor.taken(as_it_is.trials), s175q.MODEL, SETTINGS)
+    score = next(s for s in half.scores if s.trial.name == "zigzag-10")
+    size = half.problem.y_rms[0] / as_it_is.problem.y_rms[0]
+    own = score.counts["r"] * (score.eps_rmsn["r"] * size) ** 2
+    plain, as_recorded = (left_of(as_it_is, half, f) for f in (None, factor))
+    whole = left_of(as_it_is, as_it_is)
+    assert whole == 1.0
+    assert as_recorded > plain
+    outputs = [s for s in as_it_is.scores if s.trial.use == "fit"]
+    square = sum(s.counts[c] * e**2 for s in outputs for c, e in s.eps_rmsn.items())
+    assert (as_recorded - plain) * square == pytest.approx(3.0 * own, rel=1e-6)
+
+
+def test_a_heading_has_no_factor(as_it_is: Fit) -> None:
+    """Nor has any other direction: where its zero lies is no part of the ship."""
+    model = (s175q.MODEL + CATALOGUE["steady_wind"]).with_values(CALM)
+    trials = [
+        replace(t, signals={**t.signals, "psi": np.cumsum(t.signals["r"]) * t.period})
+        for t in as_it_is.trials
+    ]
+    fit = identify(trials, model, SETTINGS)
+    assert "psi" in fit.problem.simulator.equations.inputs
+    assert {f.signal for f in own_gain._factors(fit)} == {"delta", "n", "r", "phi"}
