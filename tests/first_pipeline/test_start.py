@@ -1,6 +1,7 @@
 """`trialid start`: logs in, a pipeline, a ship and a first fit out; what is not known is asked."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,8 @@ from click.testing import CliRunner
 from test_first_pipeline import L, trial, written
 
 from trialid import pipeline_file
+from trialid.alignment.quality import steps_back
+from trialid.cli import start_command
 from trialid.cli.main import commands
 from trialid.inspection import inspect_trials
 from trialid.inspection.relations import Side
@@ -130,6 +133,16 @@ def test_a_rudder_that_is_left_out_is_told(tmp_path, monkeypatch):
     told = " ".join(started(tmp_path, monkeypatch, made, *words).stdout.split())
     assert "delta: rudder_port, by its name;" in told
     assert "; CAREFUL: rudder_stbd, another of them, left out: commented out in the" in told
+
+
+def test_a_clock_that_was_set_back_by_an_hour_is_told():
+    """Two hours' samples are mixed: an outsider's run named two effects of it without a word."""
+    warnings = (f"the table: {steps_back(1, 3599.0)}", f"gyro: {steps_back(2, 0.5)}")
+    survey = SimpleNamespace(warnings=warnings)
+    begun = SimpleNamespace(trials=[SimpleNamespace(name="a.csv", survey=survey)])
+    [told] = start_command._set_back(begun)
+    assert told.startswith("CAREFUL, in a.csv: the table: time steps back 1 time, by up to 3599 s")
+    assert "whose samples mix? state its zone, or cut the log there" in told
 
 
 def test_channels_of_which_nothing_is_known_are_told_if_they_move(tmp_path, monkeypatch):

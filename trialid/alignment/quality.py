@@ -49,7 +49,7 @@ def steps_back(count: int, largest: float) -> str:
     words = f"time steps back {wording.count_of(count, 'time')}, by up to {largest:.4g} s"
     if abs(largest - HOUR_S) > ABOUT_S:
         return words
-    return f"{words} (a local clock set back by an hour, whose samples mix? cut the log there)"
+    return f"{words} ({wording.SET_BACK}, whose samples mix? state its zone, or cut the log there)"
 
 
 def of_clock(logged: Series, ordered: Series) -> Iterator[str]:

@@ -100,6 +100,7 @@ def _told(begun: "Starter") -> Iterator[str]:
     for signal in begun.trials[0].signals:
         yield f"{signal.quantity}: {signal.source.key}, {signal.why}{_left_out(signal)}."
     yield from _other_sides(begun)
+    yield from _set_back(begun)
     if left := [*_left_to_user(begun)]:
         yield f"In the log too, commented out in the pipeline with why: {', '.join(left)}."
     if unread := _unread(begun):
@@ -118,6 +119,13 @@ def _other_sides(begun: "Starter") -> Iterator[str]:
         for s in one.signals:
             if s.positive != sides.get(s.source.key, s.positive) and not s.open:
                 yield f"{s.quantity} of {one.name}: {s.why}."
+
+
+def _set_back(begun: "Starter") -> Iterator[str]:
+    """Logs whose clock was set back by an hour as the day has it: two hours' samples are mixed."""
+    for one in begun.trials:
+        found = dict.fromkeys(words for words in one.survey.warnings if wording.SET_BACK in words)
+        yield from (f"CAREFUL, in {one.name}: {words}." for words in found)
 
 
 def _left_to_user(begun: "Starter") -> Iterator[str]:

@@ -11,6 +11,8 @@ THIN = "\N{NARROW NO-BREAK SPACE}"
 _TIMES = f"{THIN}\N{MULTIPLICATION SIGN}{THIN}10"
 TOO_SHORT: Final = "too short"
 """Begins why what there is of a stretch tells nothing; what to do asks for a longer one then."""
+SET_BACK: Final = "a local clock set back by an hour"
+"""Told of stamps that step back by as much: two hours' samples are mixed."""
 RAISED = dict(zip("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹", strict=True))
 """Signs of an exponent, plain to raised."""
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from trialid import ingest
 from trialid.alignment import LogClock, SignalSource, align
+from trialid.alignment.clocks import CALENDAR_NS
 from trialid.alignment.held_roll import without_held_roll
 from trialid.alignment.track.antenna import at_origin, check_stated_speed
 from trialid.alignment.track.body_velocity import with_velocity
@@ -30,6 +31,11 @@ from trialid.workflow.steering_gaps import known_throughout, own_time
 
 SHARED: Final = 0.1
 """Share of a trial's time that another may have of the same log: windows overlap at their ends."""
+
+SAME: Final = 0.05
+"""Variance of the difference over the variance below which signals of one time are one signal: put
+on clocks that are up to a sample apart those of an outsider's overlapping files differ by 0.0003 at
+most, and two runs by 1 and more: half and twice say the same."""
 
 
 def align_trials(pipeline: Pipeline, progress: Progress) -> tuple[Trial, ...]:
@@ -76,7 +82,8 @@ def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
     Raises
     ------
     PipelineError
-        Two trials share a log and more than `SHARED` of the shorter one's time, or are copies.
+        Two trials share a log, or what dated logs hold, and more than `SHARED` of the shorter
+        one's time, or are copies.
     """
     clocked = {t.name for t in pipeline.trials if any(log.clock for log in t.logs)}
     plain = [trial for trial in trials if trial.name not in clocked]  # others count as they state
@@ -91,10 +98,13 @@ def check_own_stretches(pipeline: Pipeline, trials: Sequence[Trial]) -> None:
         begin = max(one.start, other.start)
         end = min(t.start + t.duration * 1e9 for t in (one, other))
         shortest = min(one.duration, other.duration)
-        if files and (end - begin) / 1e9 > SHARED * shortest:
+        if (end - begin) / 1e9 <= SHARED * shortest:
+            continue
+        if files or _overlap(one, other, begin, end):
+            of = files[0] if files else "one record, in two logs"
             raise PipelineError(
                 f"{pipeline.path}: trials {one.name!r} and {other.name!r} are the same "
-                f"{(end - begin) / 1e9:.0f} s of {files[0]}; a record cannot be held out that is "
+                f"{(end - begin) / 1e9:.0f} s of {of}; a record cannot be held out that is "
                 "fitted, nor count twice: leave one out, or give each a window of its own"
             )
 
@@ -109,6 +119,18 @@ def _hold_the_same(one: Trial, other: Trial) -> bool:
     return bool(moves) and all(
         np.array_equal(one.signals[n][:count], other.signals[n][:count]) for n in moves
     )
+
+
+def _overlap(one: Trial, other: Trial, begin: float, end: float) -> bool:
+    """Whether most that moves in dated logs is the same from one stamp to another [ns]."""
+    if begin < CALENDAR_NS:
+        return False
+    at = np.arange(begin, end, one.period * 1e9)
+    shares = list[float]()
+    for n in (n for n in one.signals if n in other.signals):
+        a, b = (np.interp((at - x.start) / 1e9, x.t, x.signals[n]) for x in (one, other))
+        shares += [float(np.var(a - b) / np.var(a))] if np.ptp(a) > 0.0 else []
+    return bool(shares) and float(np.median(shares)) < SAME
 
 
 def _with_jumps(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:

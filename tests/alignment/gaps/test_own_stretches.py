@@ -52,3 +52,35 @@ def test_a_copy_under_other_stamps_is_refused(use):
         check_own_stretches(PIPELINE, (one, copied))
     again = replace(copied, signals={"r": r + 1e-9, "u": np.ones(301)})
     check_own_stretches(PIPELINE, (one, again))
+
+
+DATED = 1_780_477_200  # s, in 2026
+
+
+def of_day(name, begin, seconds, sha256, seed=4, noise=0.0):
+    """A part of one day's record, in a file of its own; what moves with its own noise."""
+    day = np.cumsum(np.random.default_rng(seed).normal(size=2000))
+    blank = of_log(name, DATED + begin, seconds, sha256)
+    own = noise * np.random.default_rng(begin).normal(size=seconds + 1)
+    moved = day[begin : begin + seconds + 1] + own
+    return replace(blank, signals={"r": moved, "delta": -moved, "n": np.ones(seconds + 1)})
+
+
+def test_two_logs_of_one_day_that_overlap_are_refused():
+    """An outsider held out a third of what was fitted, and no word was said."""
+    first, later = of_day("a", 0, 900, "aa"), of_day("b", 600, 900, "bb")
+    with pytest.raises(PipelineError, match="'a' and 'b' are the same 300 s of one record, in two"):
+        check_own_stretches(PIPELINE, (first, later))
+    check_own_stretches(PIPELINE, (first, of_day("b", 890, 900, "bb")))
+
+
+def test_a_recorder_whose_date_is_wrong_holds_another_run():
+    """It says the same hour of all of them, and nothing in them is alike."""
+    check_own_stretches(PIPELINE, (of_day("a", 0, 900, "aa"), of_day("b", 600, 900, "bb", seed=5)))
+
+
+def test_logs_without_a_date_may_begin_at_the_same_second():
+    """Two runs with the same orders: nobody knows when they were."""
+    one, other = of_day("a", 0, 900, "aa"), of_day("b", 0, 900, "bb", noise=0.1)
+    undated = [replace(t, start=t.start - DATED * 10**9) for t in (one, other)]
+    check_own_stretches(PIPELINE, undated)

@@ -44,9 +44,10 @@ class Rows:
 
 TO_CHECK: Final = re.compile(
     r"; left as (it is|they are)\b|: only \[.*\] s is used|\bstuck\?|\bheels inward in turns\b"
+    rf"|\b{wording.SET_BACK}\b"
 )
 """What a remark says of values that a person has to judge: a jump, a record that is used in part, a
-roll that may be positive to port."""
+roll that may be positive to port, a clock that was set back."""
 
 ROWS: Final = (
     Rows(trials=8, parameters=12, candidates=4, findings=3),
