@@ -19,6 +19,7 @@ from trialid.diagnosis.diagnosed import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.error_parts import Split
 from trialid.diagnosis.where.finding import Finding
 from trialid.diagnosis.where.misfit import Where
+from trialid.identification.check.own_clock import own_clocks
 from trialid.identification.fit import Fit
 from trialid.identification.output_error import step_halving
 from trialid.identification.remarks import another_mass, remarks
@@ -162,6 +163,7 @@ def _fit(done: Diagnosed, *, missing: bool) -> FitPart:
         remarks=(
             *other,
             *remarks(fit),
+            *own_clocks(fit, done.accuracy),
             *another_mass(fit, done.accuracy),
             *in_speed(fit, done.accuracy),
             *cannot_tell(fit, done.accuracy),
