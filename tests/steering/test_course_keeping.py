@@ -16,6 +16,7 @@ from trialid.diagnosis.objections import more_on_course
 from trialid.diagnosis.records.course_keeping import (
     by_the_rudder,
     gained_on_course,
+    mostly_on_course,
     stretches_on_course,
     zigzag_first,
 )
@@ -133,6 +134,8 @@ def test_of_no_fit_on_course_a_zigzag_is_the_way_out(
     assert found.reason == failed.reason
     assert ("fit a zig-zag" in found.advice) == told
     assert found.advice.endswith(failed.advice) == (not told or not converged)
+    assert len(mostly_on_course(fit)) == told
+    assert all("% of the time an autopilot keeps her" in one for one in mostly_on_course(fit))
 
 
 @pytest.mark.study(turn=1)

@@ -1,6 +1,7 @@
 """What to read beside the parameters of a fit, sound or not."""
 
 import math
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,7 @@ from trialid.identification.nuisance.priors import time_per_length
 from trialid.identification.roll.own_roll import damped_by, is_a_ships, is_rolled_by_others
 from trialid.identification.roll.told_gm import late_roll
 from trialid.names.wording import with_unit
+from trialid.ship.effect import Force
 
 OFF_AMIDSHIPS: Final = np.deg2rad(0.5)
 """[rad] Zero of a rudder that one-sided overshoots come of: a tenth of a 5 deg helm; and a list
@@ -95,19 +97,13 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         for n, z in fit.contradicted.items()
         if n not in own | of_all and not _begins_off(fit, n)
     ]
-    driven = [
-        f"{n} = {said(n, fit.value(n))} would drive her on when she {when}: no hull does, and "
-        "something that is missing may stand in it"
-        for n, when in DAMPS.items()
-        if n in units and fit.value(n) > 0.0
-    ]
     weak = ["the search was slow to the end: some parameters can hardly be told apart"]
     return (
         *own_sensors(fit),
         *_untold_GM(fit),
         *bounds,
         *against,
-        *driven,
+        *_other_signs(fit, said),
         *(STANDS_OFF[name][1].format(f"{np.rad2deg(by):.2g}") for name, by in off.items()),
         *_another_in_each(fit),
         *_late(fit),
@@ -116,6 +112,30 @@ def remarks(fit: Fit) -> tuple[str, ...]:
         *_other_speed(fit),
         *(weak if fit.weakly_identified else []),
     )
+
+
+def _other_signs(fit: Fit, said: Callable[[str, float], str]) -> list[str]:
+    """Numbers of a sign that no ship has.
+
+    Of a rudder where nothing else in the model is of it: with which `--auto` ended for an
+    outsider's ship in wind was an eighth of what it is, and turned her the other way.
+    """
+    known = {x.name for x in fit.problem.unknowns}
+    driven = [
+        f"{n} = {said(n, fit.value(n))} would drive her on when she {when}: no hull does, and "
+        "something that is missing may stand in it"
+        for n, when in DAMPS.items()
+        if n in known and fit.value(n) > 0.0
+    ]
+    value = fit.value("Ndelta") if "Ndelta" in known else 0.0
+    pushes = {e.name for e in fit.model.effects if Force in e.forms and "delta" in e.signals}
+    if value >= 0.0 or pushes - {"linear_rudder", "surge_rudder"}:
+        return driven
+    return [
+        *driven,
+        f"Ndelta = {said('Ndelta', value)} would turn her to the other side than her rudder is put "
+        "to: no rudder does, and something that is missing, or that was added, may stand in it",
+    ]
 
 
 def _begins_off(fit: Fit, name: str) -> bool:

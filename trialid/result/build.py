@@ -17,6 +17,7 @@ from trialid.design.wind_and_current import cannot_tell, in_speed
 from trialid.diagnosis.another_value import follow_with_another_value
 from trialid.diagnosis.diagnosed import Diagnosed, Diagnosis
 from trialid.diagnosis.noise.error_parts import Split
+from trialid.diagnosis.records.course_keeping import mostly_on_course
 from trialid.diagnosis.where.finding import Finding
 from trialid.diagnosis.where.misfit import Where
 from trialid.identification.check.own_clock import own_clocks
@@ -163,6 +164,7 @@ def _fit(done: Diagnosed, *, missing: bool) -> FitPart:
         remarks=(
             *other,
             *remarks(fit),
+            *mostly_on_course(fit),
             *own_clocks(fit, done.accuracy),
             *another_mass(fit, done.accuracy),
             *in_speed(fit, done.accuracy),

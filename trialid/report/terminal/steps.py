@@ -25,6 +25,9 @@ def line(step: StepRow) -> str:
     >>> line(StepRow(step="added", added="static_list", eps_rmsn=0.05, eps_rmsn_check=0.06,
     ...              noise=0.04, undermodelling=0.03, verdict="nothing missing"))
     '+ static_list               5.00 %    6.00 %  4.00 %  3.00 %  nothing missing'
+    >>> line(StepRow(step="as written", eps_rmsn=0.04, eps_rmsn_check=0.03, noise=0.04,
+    ...              undermodelling=0.00091, verdict="nothing missing"))
+    'as written                  4.00 %    3.00 %  4.00 % 0.0910 %  nothing missing'
     """
     errors = (step.eps_rmsn, step.eps_rmsn_check, step.noise, step.undermodelling)
     *above, words = _broken(short_words(step))
@@ -63,5 +66,5 @@ def short_words(step: StepRow) -> str:
 
 
 def _line(name: str, numbers: Sequence[str], words: str) -> str:
-    cells = "".join(f"{n:>{width}}" for n, width in zip(numbers, (8, 10, 8, 8), strict=True))
+    cells = "".join(f" {n:>{width}}" for n, width in zip(numbers, (7, 9, 7, 7), strict=True))
     return f"{name:<{_NAME}}{cells}  {words}".rstrip()
