@@ -170,6 +170,16 @@ def residual_at(problem: Problem, theta: Vector) -> Vector | Departure:
     return np.concatenate(rows)
 
 
+def residual_of_trial(problem: Problem, theta: Vector, trial: int) -> Vector | Departure:
+    """The rows of one trial alone, simulated without the others; (M_trial,)."""
+    response = _respond(problem, theta, sensitivities=False, trial=trial)
+    if response.departure is not None:
+        return response.departure
+    scale = row_scale(problem)
+    mine = [p for p in stretches(problem) if p.trial == trial]
+    return np.concatenate([_rows_of(problem, p, response, scale) for p in mine])
+
+
 def _rows_of(problem: Problem, part: Stretch, response: Response, scale: Vector) -> Vector:
     """Normed residual of one output of one trial; (rows,)."""
     measured = problem.trials[part.trial].signals[problem.outputs[part.output]]

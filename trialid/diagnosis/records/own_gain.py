@@ -17,7 +17,7 @@ from trialid.diagnosis.records.left_without import OTHERS
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.errors import TrialidError
 from trialid.identification.fit import Fit, identify
-from trialid.identification.output_error import residual_at
+from trialid.identification.output_error import residual_of_trial, stretches
 from trialid.names.quantities import OVER_GROUND, SIGNALS
 from trialid.simulation.integrate import Departure, record_for
 from trialid.trial import Trial
@@ -43,6 +43,10 @@ STEP: Final = 0.01
 ARRIVED: Final = 0.003
 """Of the factor, by which it no longer moves: a third of a percent is no other calibration."""
 ROUNDS: Final = 4
+UNSEEN: Final = 1e-9
+"""Share of a slope's square below which what is free does the same: one rudder's gain in all."""
+_SINGULAR: Final = 1e-9
+"""Share of the largest singular value below which a direction moves nothing."""
 RANGE: Final = (0.5, 2.0)
 """Of the factor: what is further off is another unit, and looked for as that."""
 
@@ -140,7 +144,8 @@ def own_gains(fit: Fit, of: str | None = None) -> list[OwnGain]:
     """
     if len(fit.problem.trials) <= OTHERS:
         return []
-    steps = ((_foretold(fit, f), f) for f in _factors(fit) if of in (None, f.trial))
+    explained = _Explained.by(fit)
+    steps = ((_foretold(fit, explained, f), f) for f in _factors(fit) if of in (None, f.trial))
     able = sorted((s for s in steps if s[0][0] >= 0.5 * FALL), key=lambda s: -s[0][0])[:TRIED]
     found = (_fitted(fit, replace(f, by=1.0 + step)) for (_, step), f in able)
     return sorted((g for g in found if g is not None and g.falls), key=lambda g: g.left)
@@ -181,34 +186,48 @@ def _factors(fit: Fit) -> Iterator[Factor]:
                 yield Factor(trial.name, name)
 
 
-def _foretold(fit: Fit, factor: Factor) -> tuple[float, float]:
+@dataclass(frozen=True)
+class _Explained:
+    """What all unknowns of a fit together move, and what they leave.
+
+    Attributes
+    ----------
+    basis
+        Orthonormal columns that span it, priors as rows of their own below; (M + n_theta, k).
+    left
+        The residual without it; (M + n_theta,).
+    """
+
+    basis: Vector
+    left: Vector
+
+    @classmethod
+    def by(cls, fit: Fit) -> "_Explained":
+        """Of all that is free in a fit."""
+        slope, gap = prior_rows(fit).T
+        psi, residual = np.vstack([fit.psi, np.diag(slope)]), np.concatenate([fit.residual, gap])
+        sizes = np.linalg.norm(psi, axis=0)
+        U, s, _ = np.linalg.svd(psi / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
+        basis = U[:, s > _SINGULAR * s[0]]
+        return cls(basis, residual - basis @ (basis.T @ residual))
+
+
+def _foretold(fit: Fit, explained: _Explained, factor: Factor) -> tuple[float, float]:
     """Share of the squared error that goes by the slope of a factor, and the factor's step."""
-    moved = replace(factor, by=factor.by * (1.0 + STEP)).taken(fit.problem.trials)
-    residual = residual_at(replace(fit.problem, trials=moved), fit.theta)
-    if isinstance(residual, Departure):
+    place = next(i for i, t in enumerate(fit.problem.trials) if t.name == factor.trial)
+    moved = replace(factor, by=1.0 + STEP).taken(fit.problem.trials)
+    after = residual_of_trial(replace(fit.problem, trials=moved), fit.theta, place)
+    if isinstance(after, Departure):
         return 0.0, 0.0
-    slope = (fit.residual - residual) / STEP
-    left, whole = (
-        _beside(fit, np.column_stack([slope, fit.residual])).T,
-        float(np.dot(slope, slope)),
-    )
-    square = float(left[0] @ left[0])
-    if square <= 1e-9 * whole:  # the parameters that all share do the same
+    parts = [p.rows for p in stretches(fit.problem) if p.trial == place]
+    rows = slice(parts[0].start, parts[-1].stop)
+    slope = (fit.residual[rows] - after) / STEP
+    inside = explained.basis[rows].T @ slope
+    whole = float(slope @ slope)
+    square, moment = whole - float(inside @ inside), float(slope @ explained.left[rows])
+    if square <= UNSEEN * whole:
         return 0.0, 0.0
-    moment = float(left[0] @ left[1])
     return moment**2 / square / float(fit.residual @ fit.residual), moment / square
-
-
-def _beside(fit: Fit, columns: Vector) -> Vector:
-    """Columns with all that the unknowns do taken out, priors as rows of their own."""
-    slope, gap = prior_rows(fit).T
-    psi = np.vstack([fit.psi, np.diag(slope)])
-    below = np.zeros((len(slope), columns.shape[1]))
-    below[:, -1] = gap
-    whole = np.vstack([columns, below])
-    sizes = np.linalg.norm(psi, axis=0)
-    step = np.linalg.lstsq(psi / np.where(sizes > 0.0, sizes, 1.0), whole, rcond=1e-9)[0]
-    return np.asarray(whole - psi / np.where(sizes > 0.0, sizes, 1.0) @ step)
 
 
 def _fitted(fit: Fit, factor: Factor) -> OwnGain | None:
@@ -221,7 +240,7 @@ def _fitted(fit: Fit, factor: Factor) -> OwnGain | None:
             found = identify(factor.taken(fit.trials), fit.model, fit.settings, near=near)
         except TrialidError:  # the others alone tell too little
             return None
-        _, step = _foretold(found, replace(factor, by=1.0))
+        _, step = _foretold(found, _Explained.by(found), factor)
         if abs(step) <= ARRIVED:
             return OwnGain(factor, fit, found)
         factor, near = replace(factor, by=factor.by * (1.0 + step)), found.estimates
