@@ -188,7 +188,10 @@ def test_a_gyro_in_rps_is_in_doubt_and_a_shaft_is_not():
     assert channel_names.unit_in_name("gyro_z_rps") is None
     assert channel_names.unit_in_name("yaw_rate_rps") is None
     assert channel_names.unit_in_name("yaw_rate_rad") == "rad/s"
+    assert channel_names.unit_in_name("gyro_z_rad") == "rad/s"
     assert channel_names.unit_in_name("roll_rate_deg") is None
+    assert channel_names.unit_in_name("yaw_rate_ms") is None
+    assert channel_names.unit_in_name("rot_z_deg") == "deg"
     assert channel_names.unit_in_name("roll_deg") == "deg"
     assert channel_names.unit_in_name("shaft_rps") == "rps"
 

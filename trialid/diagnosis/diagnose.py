@@ -128,7 +128,7 @@ def _verdict(
     found = name_records(fit, found, asked.candidates.values())
     found = settle(fit, found, asked.candidates.get(found.effect or ""))
     named = _named(found, refits)
-    found = settle_trials(fit, found, named.fit if named else None)
+    found = settle_trials(fit, found, named.fit if named else None, [r.fit for r in refits])
     if found.doubts:
         return found
 

@@ -97,12 +97,14 @@ def without_unit(field: Sequence[str]) -> Sequence[str]:
 def unit_of_rate(unit: str, field: Sequence[str]) -> str | None:
     """The unit of a rate: of `rps` it is rad/s to robots; degrees may be by second or minute.
 
+    A `rot` in degrees may be a rotation; `ms` are milliseconds.
+
     >>> unit_of_rate("rad", ("yaw", "rate", "rad")), unit_of_rate("deg", ("yaw", "rate", "deg"))
     ('rad/s', None)
     """
-    if unit in ("rad", "deg") and any(word.endswith("rate") for word in field):
+    if unit in ("rad", "deg") and "rot" not in field:
         return "rad/s" if unit == "rad" else None
-    return None if unit == "rps" else unit
+    return None if unit in ("rps", "m/s") else unit
 
 
 def sides(name: str) -> set[str]:

@@ -32,7 +32,7 @@ from trialid.workflow.steering_gaps import known_throughout, own_time
 SHARED: Final = 0.1
 """Share of a trial's time that another may have of the same log: windows overlap at their ends."""
 
-SAME: Final = 0.05
+SAME: Final = 0.01
 """Variance of the difference over the variance below which signals of one time are one signal: put
 on clocks that are up to a sample apart those of an outsider's overlapping files differ by 0.0003 at
 most, and two runs by 1 and more: half and twice say the same."""
@@ -122,7 +122,7 @@ def _hold_the_same(one: Trial, other: Trial) -> bool:
 
 
 def _overlap(one: Trial, other: Trial, begin: float, end: float) -> bool:
-    """Whether most that moves in dated logs is the same from one stamp to another [ns]."""
+    """Whether all that moves in dated logs is the same from one stamp to another [ns]."""
     if begin < CALENDAR_NS:
         return False
     at = np.arange(begin, end, one.period * 1e9)
@@ -130,7 +130,7 @@ def _overlap(one: Trial, other: Trial, begin: float, end: float) -> bool:
     for n in (n for n in one.signals if n in other.signals):
         a, b = (np.interp((at - x.start) / 1e9, x.t, x.signals[n]) for x in (one, other))
         shares += [float(np.var(a - b) / np.var(a))] if np.ptp(a) > 0.0 else []
-    return bool(shares) and float(np.median(shares)) < SAME
+    return bool(shares) and max(shares) < SAME
 
 
 def _with_jumps(pipeline: Pipeline, trials: Sequence[Trial]) -> tuple[Trial, ...]:

@@ -8,8 +8,10 @@ import s175q
 
 from trialid.diagnosis.records import own_gain
 from trialid.diagnosis.records.contradicting_trial import settle_held_out, settle_trials
+from trialid.diagnosis.records.further import left_of_each, stands_out
 from trialid.diagnosis.records.own_gain import (
     Factor,
+    OwnGain,
     gain_in_doubt,
     held_gain_in_doubt,
     left_of,
@@ -93,10 +95,39 @@ def test_a_force_at_large_angles_is_no_gain_of_the_one_trial_that_has_them(monke
 
 
 def test_an_effect_that_leaves_as_little_keeps_its_name(indicator: Fit) -> None:
-    best = own_gains(indicator)[0]
-    named = replace(best.fit)  # as if an effect had taken as much off
-    assert gain_in_doubt(indicator, named) is None
-    assert gain_in_doubt(indicator, indicator) is not None
+    as_much = own_gains(indicator)[0].fit  # as if an effect had taken it off
+    assert gain_in_doubt(indicator, [indicator]) is not None
+    assert gain_in_doubt(indicator, [indicator, as_much]) is None
+    assert settle_trials(indicator, NAMED, None, [indicator, as_much]).kind == "missing"
+    family = replace(NAMED, effect=None, kind="cannot tell")
+    assert settle_trials(indicator, family, None, [as_much]).family == NAMED.family
+
+
+def test_a_hair_is_no_other_calibration(as_it_is: Fit) -> None:
+    """However closely the model follows: of a factor of 1.01 and half the error nothing is said."""
+    [half] = [replace(as_it_is, residual=0.7 * as_it_is.residual)]
+    less = tuple(
+        replace(s, eps_rmsn={c: 0.7 * e for c, e in s.eps_rmsn.items()}) for s in as_it_is.scores
+    )
+    half = replace(half, scores=less)
+    told = [OwnGain(Factor("zigzag-10", "r", by), as_it_is, half) for by in (1.01, 1.05)]
+    assert [one.falls for one in told] == [False, True]
+
+
+def test_what_does_not_move_the_ship_or_carries_no_fit_is_not_asked(indicator: Fit) -> None:
+    still = replace(indicator, model=replace(indicator.model, states=()))
+    assert own_gains(still) == []
+    assert own_gains(replace(indicator, converged=False)) == []
+
+
+def test_a_trial_held_out_of_which_nothing_is_compared_hides_no_other() -> None:
+    fit = fitted("delta", 1.3, held="zigzag-10")
+    held = next(s for s in fit.scores if s.trial.use == "check")
+    blank = replace(held, trial=replace(held.trial, name="a blank"), eps_rmsn={}, counts={})
+    more = replace(fit, scores=(*fit.scores[:1], blank, *fit.scores[1:]))
+    assert left_of_each(more)["a blank"] == 0.0
+    assert stands_out(more, "zigzag-10")
+    assert left_of(more, fit, None, "check") == pytest.approx(1.0)
 
 
 def test_a_trial_held_out_is_told_too() -> None:
@@ -108,8 +139,9 @@ def test_a_trial_held_out_is_told_too() -> None:
     assert " delta times 0.768 " in said
     settled = settle_held_out(fit, Verdict("nothing missing", None, (), "nothing"), None)
     assert (settled.kind, settled.doubts) == ("cannot tell", (said,))
-    beside = settle_held_out(fit, NAMED, None)
-    assert (beside.effect, beside.sentence) == ("rudder_stall", f"{NAMED.sentence}; {said}")
+    for kept in (NAMED, Verdict("not in catalogue", None, (), "a gap")):
+        beside = settle_held_out(fit, kept, None)
+        assert beside == replace(kept, sentence=f"{kept.sentence}; {said}")
 
 
 def test_of_two_trials_nobody_knows_which_reads_wrong() -> None:
@@ -120,15 +152,20 @@ def test_what_is_left_of_a_log_that_was_multiplied_counts_as_it_was_recorded(as_
     """Else the smallest factor would leave least."""
     factor = Factor("zigzag-10", "r", 0.5)
     half = identify(factor.taken(as_it_is.trials), s175q.MODEL, SETTINGS)
+    fitted_scores = [s for s in as_it_is.scores if s.trial.use == "fit"]
     score = next(s for s in half.scores if s.trial.name == "zigzag-10")
     size = half.problem.y_rms[0] / as_it_is.problem.y_rms[0]
-    own = score.counts["r"] * (score.eps_rmsn["r"] * size) ** 2
+    all_r = sum(s.counts["r"] for s in fitted_scores)
+    own = score.counts["r"] / all_r * (score.eps_rmsn["r"] * size) ** 2
     plain, as_recorded = (left_of(as_it_is, half, f) for f in (None, factor))
     whole = left_of(as_it_is, as_it_is)
     assert whole == 1.0
     assert as_recorded > plain
-    outputs = [s for s in as_it_is.scores if s.trial.use == "fit"]
-    square = sum(s.counts[c] * e**2 for s in outputs for c, e in s.eps_rmsn.items())
+    square = sum(
+        sum(s.counts[c] * s.eps_rmsn[c] ** 2 for s in fitted_scores)
+        / sum(s.counts[c] for s in fitted_scores)
+        for c in ("r", "phi")
+    )
     assert (as_recorded - plain) * square == pytest.approx(3.0 * own, rel=1e-6)
 
 

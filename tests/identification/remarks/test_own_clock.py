@@ -7,12 +7,16 @@ import numpy as np
 import pytest
 import s175q
 
+from trialid.diagnosis.diagnose import diagnose
+from trialid.diagnosis.diagnosed import DiagnoseSettings
+from trialid.effects import CATALOGUE
 from trialid.identification.check.own_clock import APART, own_clocks
 from trialid.identification.fit import identify
 
 SETTINGS = replace(
     s175q.SETTINGS, free=("Nv", "Nr", "Ndelta", "Kdelta"), nuisance=("initial_state", "delay")
 )
+SOONER = ["in zigzag-10 r comes 1.9 s sooner", "in zigzag-10 phi comes 2 s sooner"]
 
 
 def fitted(late, n=3):
@@ -41,16 +45,21 @@ def late():
 
 def test_a_rudder_that_is_late_in_one_trial_is_told_by_all_that_it_moves(late):
     said = own_clocks(late, known(late, 0.1))
-    assert [words.split(" than")[0] for words in said] == [
-        "in zigzag-10 r comes 1.9 s sooner",
-        "in zigzag-10 phi comes 2 s sooner",
-    ]
+    assert [words.split(" after")[0] for words in said] == SOONER
+
+
+def test_it_is_told_by_the_accuracy_of_a_run(late):
+    asked = DiagnoseSettings(candidates={"lag_r": CATALOGUE["lag_r"]}, coefficients=False)
+    said = own_clocks(late, diagnose(late, asked).before.own_accuracy)
+    assert [words.split(" after")[0] for words in said] == SOONER
 
 
 def test_so_is_one_that_is_early():
     fit = fitted(-2.0)
     said = own_clocks(fit, known(fit, 0.1))
-    assert said[0].startswith("in zigzag-10 r comes 2.1 s later than in the others")
+    assert said[0].startswith(
+        "in zigzag-10 r comes 2.1 s later after the rudder than in the others"
+    )
 
 
 @pytest.mark.parametrize("error", [2.1 / APART, np.inf])

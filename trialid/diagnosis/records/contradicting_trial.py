@@ -97,15 +97,18 @@ class Contradicting:
         )
 
 
-def settle_trials(fit: Fit, verdict: Verdict, named: Fit | None) -> Verdict:
+def settle_trials(
+    fit: Fit, verdict: Verdict, named: Fit | None, refits: Sequence[Fit] = ()
+) -> Verdict:
     """The verdict; where a fitted trial contradicts the others, that, and nothing is named.
 
-    A factor of one of its logs comes first: it says what of it does. But where the effect does as
-    much for the others as leaving it out, and none contradicts the model with it.
+    A factor of one of its logs comes first, which says more than that the trial does; of effects
+    all that were fitted may do as much (`refits`). A name stays where the effect does as much for
+    the others as leaving that trial out, and where none contradicts the model with it.
     """
     if verdict.doubts:
         return verdict
-    if gain := gain_in_doubt(fit.examined, named.examined if named else None):
+    if gain := gain_in_doubt(fit.examined, [one.examined for one in refits]):
         return _in_doubt(gain)
     found = contradicting_trial(fit.examined)
     if named and (found is None or found.is_explained_by(named.examined)):
@@ -123,9 +126,14 @@ def settle_held_out(fit: Fit, verdict: Verdict, named: Refit | Together | None) 
     judged = (named.fit if named else fit).examined
     if (seen := _held_out_in_doubt(judged)) is None:
         return verdict
-    if verdict.effect or verdict.family or verdict.together:
+    if verdict.kind not in ("nothing missing", "cannot tell") or _tells(verdict):
         return replace(verdict, sentence=f"{verdict.sentence}; {seen}")
     return _in_doubt(seen)
+
+
+def _tells(verdict: Verdict) -> bool:
+    """Whether it says what may be missing, or what is to be freed."""
+    return bool(verdict.family or verdict.together or verdict.held_as_well)
 
 
 def _held_out_in_doubt(fit: Fit) -> str | None:

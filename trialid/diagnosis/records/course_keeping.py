@@ -95,10 +95,13 @@ def mostly_on_course(fit: Fit) -> tuple[str, ...]:
     Of an outsider's three voyages, 93 % of whose time is, the likely range of Ndelta ended at a
     quarter of what it is: an error that the rudder itself answers is none of noise.
     """
+    if not {"delta", "delta_order"} & {*fit.problem.simulator.equations.inputs}:
+        return ()
     kept = _kept(fit)
     said = (
-        f"{_told(kept)}: her rudder answers there what the model does not know, and no range of a "
-        "number holds what that does to it; fit a zig-zag, or rudders put over and held"
+        f"{_told(kept)}: her rudder answers there what the model does not know, and the likely "
+        "ranges of numbers are too narrow for what that does; fit a zig-zag, or rudders put over "
+        "and held"
     )
     return (said,) if kept > ON_COURSE else ()
 

@@ -48,10 +48,9 @@ def is_no_further(fit: Fit, name: str) -> bool:
 
 
 def left_of_each(fit: Fit) -> dict[str, float]:
-    """Error of each trial over its outputs, by what moved in all that are fitted."""
-    return {
-        s.trial.name: float(np.sqrt(np.mean(np.square([*s.eps_rmsn.values()])))) for s in fit.scores
-    }
+    """Error of each trial over its outputs, by what moved in all; 0 of one without any."""
+    squares = {s.trial.name: [*np.square([*s.eps_rmsn.values()])] for s in fit.scores}
+    return {name: float(np.sqrt(np.mean(each or [0.0]))) for name, each in squares.items()}
 
 
 def stands_out(fit: Fit, name: str) -> bool:

@@ -16,6 +16,7 @@ from trialid.diagnosis.records.further import is_no_further, stands_out
 from trialid.diagnosis.records.left_without import OTHERS
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.errors import TrialidError
+from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
 from trialid.identification.output_error import residual_of_trial, stretches
 from trialid.names.quantities import OVER_GROUND, SIGNALS
@@ -27,13 +28,17 @@ FALL: Final = 0.2
 most, of 21 choices of real zig-zags on a pond and in a basin less. Of 48 records of which one trial
 reads 5 to 18 % otherwise it is told in 18, each time of the right trial and its right sensor; half
 as much tells 28, all right, and twice 13. Of an outsider's 53 runs it is told of ten with such a
-log, all rightly, and of one with a wind in that trial alone."""
+log, rightly, and of one with a wind in that trial alone, wrongly."""
+
+LEAST: Final = 0.02
+"""By which a factor is another than 1: a record of a basin shows less, and no indicator is as good.
+All that were told are 5 % off and more: half of it and twice tell the same."""
 
 AHEAD: Final = 1.1
-"""Times what is left with it that an effect must leave, to give way to it, and another log of the
-trial, to be told from it. Of those 18 records any other log of the trial leaves 1.08 to 13 times as
-much, and the best effect of nine more 1.48 times and more: half as far beyond 1 and twice give way
-to the same ones; twice leaves three of the 18 with two logs, half none."""
+"""An effect that leaves this many times what is left with a factor gives way to it, and so does
+another log of the same trial; one that leaves less does not. Of those 18 records any other log of
+the trial leaves 1.08 to 13 times as much, the best effect of nine more 1.48 times and more: half as
+far beyond 1 and twice decide alike of effects; twice leaves three of the 18 with two logs."""
 
 TRIED: Final = 3
 """Of what slopes foretell most of; fitted."""
@@ -44,7 +49,7 @@ ARRIVED: Final = 0.003
 """Of the factor, by which it no longer moves: a third of a percent is no other calibration."""
 ROUNDS: Final = 4
 UNSEEN: Final = 1e-9
-"""Share of a slope's square below which what is free does the same: one rudder's gain in all."""
+"""Share of a slope's square below which what is free does the same."""
 _SINGULAR: Final = 1e-9
 """Share of the largest singular value below which a direction moves nothing."""
 RANGE: Final = (0.5, 2.0)
@@ -89,9 +94,9 @@ class OwnGain:
         ship it explains a part.
         """
         held = left_of(self.before, self.fit, self.factor, "check")
-        if self.left > 1.0 - FALL or held > 1.0 or not is_no_further(self.fit, self.factor.trial):
-            return False
-        return not stands_out(self.fit, self.factor.trial)
+        much = self.left <= 1.0 - FALL and held <= 1.0 and abs(self.factor.by - 1.0) >= LEAST
+        trial = self.factor.trial
+        return much and is_no_further(self.fit, trial) and not stands_out(self.fit, trial)
 
     @property
     def words(self) -> str:
@@ -99,19 +104,21 @@ class OwnGain:
         return f"{self.factor.signal} times {self.factor.by:.3g}"
 
 
-def gain_in_doubt(fit: Fit, named: Fit | None = None) -> str | None:
+def gain_in_doubt(fit: Fit, refits: Sequence[Fit] = ()) -> str | None:
     """What one trial's log may read otherwise than in the others; None where none clearly does.
 
-    Nothing where the model with what is to be `named` leaves as little.
+    Nothing where any effect that was fitted leaves about as little.
     """
     found = own_gains(fit)
-    if not found or (named and left_of(fit, named) < AHEAD * found[0].left):
+    if not found or any(left_of(fit, other) < AHEAD * found[0].left for other in refits):
         return None
     return _sentence(found, "with")
 
 
 def held_gain_in_doubt(fit: Fit, held: str) -> str | None:
     """The same of a trial held out, fitted beside the others."""
+    if len(fit.problem.trials) < OTHERS or why_no_fit(fit):
+        return None
     trials = [replace(t, use="fit") if t.name == held else t for t in fit.trials]
     try:
         beside = identify(trials, fit.model, fit.settings, near=fit.estimates)
@@ -132,8 +139,8 @@ def _sentence(found: Sequence[OwnGain], begins: str) -> str:
         f"{best.factor.trial} reads otherwise than the others: {begins} its "
         f"{' or '.join(as_good)} the error falls from {best.before.eps_rmsn:.2%} to "
         f"{best.fit.eps_rmsn:.2%}{out}; that log is off, or load, wind or current was another "
-        "there: where a second sensor agrees give it that gain in the trial's [trial.signals], or "
-        "leave the trial out"
+        "there: where a second sensor agrees multiply its gain in the trial's [trial.signals] by "
+        "that, or leave the trial out"
     )
 
 
@@ -142,7 +149,7 @@ def own_gains(fit: Fit, of: str | None = None) -> list[OwnGain]:
 
     Of that trial alone where one is given.
     """
-    if len(fit.problem.trials) <= OTHERS:
+    if len(fit.problem.trials) <= OTHERS or not fit.model.states or why_no_fit(fit):
         return []
     explained = _Explained.by(fit)
     steps = ((_foretold(fit, explained, f), f) for f in _factors(fit) if of in (None, f.trial))
@@ -163,26 +170,31 @@ def left_of(
 
 
 def _squares(norm: Fit, fit: Fit, factor: Factor | None, use: str) -> float:
-    """Squared error, each output by the norm and weight of the first fit."""
+    """Squared error, each output by the norm, the weight and the samples of the first fit."""
     whole, outputs = 0.0, fit.problem.outputs
+    counts = {
+        c: sum(s.counts.get(c, 0) for s in norm.scores if s.trial.use == use) for c in outputs
+    }
     for score in (s for s in fit.scores if s.trial.use == use):
         for c, eps in score.eps_rmsn.items():
             i = outputs.index(c)
             own = factor and (factor.trial, factor.signal) == (score.trial.name, c)
             by = factor.by if factor and own else 1.0
             size = fit.problem.y_rms[i] / norm.problem.y_rms[i] / by
-            whole += score.counts[c] * (norm.problem.weights[i] * eps * size) ** 2
+            share = score.counts[c] / max(counts[c], 1)
+            whole += share * (norm.problem.weights[i] * eps * size) ** 2
     return float(whole)
 
 
 def _factors(fit: Fit) -> Iterator[Factor]:
     """Of every log that is read, but of directions and of what is told over ground."""
     read = (*fit.problem.simulator.equations.inputs, *fit.problem.outputs)
+    round_about = {a.angle for a in fit.model.ship.actuators if a.kind == "azimuth"}
     for trial in fit.problem.trials:
         records = (record_for(trial, n) for n in read)
         for name in dict.fromkeys(n for n in records if n):
             known = SIGNALS.get(name)
-            if name not in OVER_GROUND and not (known and known.angle):
+            if name not in {*OVER_GROUND, *round_about} and not (known and known.angle):
                 yield Factor(trial.name, name)
 
 
@@ -206,6 +218,7 @@ class _Explained:
         """Of all that is free in a fit."""
         slope, gap = prior_rows(fit).T
         psi, residual = np.vstack([fit.psi, np.diag(slope)]), np.concatenate([fit.residual, gap])
+        psi = psi[:, [x.name not in fit.at_bounds for x in fit.problem.unknowns]]
         sizes = np.linalg.norm(psi, axis=0)
         U, s, _ = np.linalg.svd(psi / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
         basis = U[:, s > _SINGULAR * s[0]]

@@ -59,7 +59,7 @@ def _scaled(one: Actuator, parameter: str) -> Callable[..., Steered]:
     it: an outsider's boat whose thrust goes with the share itself had one thruster weak by 0.51
     where 0.30 of its force was lost.
     """
-    square = one.command == "revolutions" and one.kind != "rudder"
+    square = one.kind != "rudder" and one.command == "revolutions"
 
     def scale(**values: Number) -> Steered:
         left = 1.0 - values[parameter]
@@ -71,8 +71,8 @@ def _scaled(one: Actuator, parameter: str) -> Callable[..., Steered]:
 
 def _what(one: Actuator) -> str:
     """What of it is scaled."""
-    of_force = one.kind == "rudder" or one.command != "share"
-    return f"{'force' if of_force else 'share of full'} of {one.name}"
+    by_share = one.kind != "rudder" and one.command == "share"
+    return f"{'share of full' if by_share else 'force'} of {one.name}"
 
 
 def _weak(one: Actuator) -> Effect:

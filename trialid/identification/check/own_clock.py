@@ -34,10 +34,10 @@ def own_clocks(fit: "Fit", accuracy: Accuracy) -> tuple[str, ...]:
     least = LEAST * time_per_length(fit.model, fit.problem.trials)
     names = [t.name for t in fit.problem.trials]
     return tuple(
-        f"in {name} {c} comes {abs(off):.2g} s {'later' if off > 0.0 else 'sooner'} than in the "
-        "others beside what drives her: a clock is off there, most likely the rudder's where more "
-        "than one output does so, or what the model lacks looks like it; `delay` of a signal sets "
-        "it right"
+        f"in {name} {c} comes {abs(off):.2g} s {'later' if off > 0.0 else 'sooner'} after the "
+        "rudder than in the others: a clock is off there, most likely the rudder's where more than "
+        f"one output does so (a `delay` of {-off:.2g} s more in it), or what the model lacks looks "
+        "like it"
         for c in fit.problem.outputs
         for name, off in _apart(fit, c, names, known)
         if abs(off) >= least
@@ -49,7 +49,11 @@ def _apart(
 ) -> Iterator[tuple[str, float]]:
     """Trials with a delay of their own, and by how much it is another than the others' [s]."""
     rows = {t: f"tau_{output} [{t}]" for t in names}
-    if len(names) <= OTHERS or any(row not in fit.estimates for row in rows.values()):
+    if (
+        len(names) <= OTHERS
+        or not fit.model.states
+        or any(row not in fit.estimates for row in rows.values())
+    ):
         return
     for name, row in rows.items():
         others = [fit.value(other) for t, other in rows.items() if t != name]
