@@ -99,6 +99,14 @@ def test_an_effect_that_leaves_as_little_keeps_its_name(indicator: Fit) -> None:
     assert gain_in_doubt(indicator, [indicator]) is not None
     assert gain_in_doubt(indicator, [indicator, as_much]) is None
     assert settle_trials(indicator, NAMED, None, [indicator, as_much]).kind == "missing"
+    held = [
+        replace(s, eps_rmsn={c: 9.0 * e for c, e in s.eps_rmsn.items()})
+        for s in as_much.scores
+        if s.trial.use == "check"
+    ]
+    others = [s for s in as_much.scores if s.trial.use == "fit"]
+    denied = replace(as_much, scores=(*others, *held))
+    assert gain_in_doubt(indicator, [denied]) is not None
     family = replace(NAMED, effect=None, kind="cannot tell")
     assert settle_trials(indicator, family, None, [as_much]).family == NAMED.family
 
@@ -142,6 +150,15 @@ def test_a_trial_held_out_is_told_too() -> None:
     for kept in (NAMED, Verdict("not in catalogue", None, (), "a gap")):
         beside = settle_held_out(fit, kept, None)
         assert beside == replace(kept, sentence=f"{kept.sentence}; {said}")
+
+
+def test_the_one_held_out_is_not_told_where_a_fitted_one_is_off(indicator: Fit) -> None:
+    said = held_gain_in_doubt(indicator, "zigzag-5")
+    assert said is not None
+    assert said.startswith(
+        "zigzag-10 reads otherwise than the others: with zigzag-5 fitted too and"
+    )
+    assert " delta times 0.87 " in said
 
 
 def test_of_two_trials_nobody_knows_which_reads_wrong() -> None:
