@@ -176,14 +176,19 @@ def _itself(held: Number) -> Number:
 def _held_drive(
     ship: Ship, one: Actuator, held: str
 ) -> tuple[str, Callable[[Number], Number], Parameter]:
-    """What is held of a drive: a share of its thrust, whose slope does not vanish at rest."""
+    """What is held of a drive: a share of its thrust, whose slope does not vanish at rest.
+
+    Of a share of full, whose thrust goes with no known power of it, of its square.
+    """
     full = one.limit if math.isfinite(one.limit) else typical_drive(ship, one.command)
 
     def drive(share: Number) -> Number:
         return full * (share if one.command == "thrust" else share / sqrt(abs(share) + NOWHERE))
 
-    unit = "" if one.command == "share" else f" {COMMANDS[one.command]}"
-    return f"thrust = {held} of that at {full:.3g}{unit}", drive, _HELD_THRUST
+    by_share = one.command == "share"
+    unit = "" if by_share else f" {COMMANDS[one.command]}"
+    what = f"square of {one.name}" if by_share else "thrust"
+    return f"{what} = {held} of that at {full:.3g}{unit}", drive, _HELD_THRUST
 
 
 def _turned_thrust(ship: Ship, one: Actuator) -> Effect:
