@@ -52,6 +52,7 @@ from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.meant_as_well import beside_others
 from trialid.diagnosis.noise.noise_bound import held_against
 from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.records.contradicting_trial import settle_trials
 from trialid.diagnosis.search.completeness import completeness
 from trialid.diagnosis.search.freed import candidates_to_free
 from trialid.diagnosis.search.refit import Refit
@@ -142,7 +143,10 @@ def diagnosed(
         sure = partial(accuracy_of, fit, parts, may_be_off(augmented))
         verdict = with_held_out(fit.examined, verdict, lambda: sure().covariance, asked.level)
         named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
-        verdict = beside_others(fit, verdict, named, parts, whole, asked=asked, progress=silent)
+        fitted = [r.fit for r in tried.refits]
+        verdict = settle_trials(fit, verdict, named.fit if named else None, fitted)
+        if not verdict.doubts:
+            verdict = beside_others(fit, verdict, named, parts, whole, asked=asked, progress=silent)
         gap = verdict.kind == "not in catalogue"
         force = missing_force(fit.examined, asked.level) if gap else None
         verdict = without_gap(fit, verdict, ranking, parts, force, asked.level)
