@@ -143,8 +143,8 @@ def diagnosed(
         sure = partial(accuracy_of, fit, parts, may_be_off(augmented))
         verdict = with_held_out(fit.examined, verdict, lambda: sure().covariance, asked.level)
         named = next((r for r in tried.refits if r.candidate.effect.name == verdict.effect), None)
-        fitted = [r.fit for r in tried.refits]
-        verdict = settle_trials(fit, verdict, named.fit if named else None, fitted)
+        known = named.fit if named else None
+        verdict = settle_trials(fit, verdict, known, [r.fit for r in tried.refits])
         if not verdict.doubts:
             verdict = beside_others(fit, verdict, named, parts, whole, asked=asked, progress=silent)
         gap = verdict.kind == "not in catalogue"
@@ -235,10 +235,8 @@ def run_all(todo: Sequence[Task], jobs: int, on: str | None = None) -> list[Row]
 
 def _told(row: Row, done: int, of: int) -> Row:
     said = f"{row.kind} {row.name}".strip()
-    print(
-        f"{done}/{of} {row.scenario}, {row.noise}, {row.trials}, seed {row.seed}: {said}",
-        file=sys.stderr,
-    )
+    where = f"{row.scenario}, {row.noise}, {row.trials}, seed {row.seed}"
+    print(f"{done}/{of} {where}: {said}", file=sys.stderr)
     return row
 
 
@@ -268,9 +266,8 @@ def options() -> argparse.Namespace:
     )
     parser.add_argument("--noise", type=_names(NOISES), help="with commas")
     parser.add_argument("--trials", type=_names(tuple(TRIAL_SETS)), help="with commas")
-    parser.add_argument(
-        "--fixed-off", type=float, default=0.0, help="share by which what is held fixed is off"
-    )
+    off = "share by which what is held fixed is off"
+    parser.add_argument("--fixed-off", type=float, default=0.0, help=off)
     add_options(parser)
     parser.add_argument("--out", type=Path, help="FILE.md or FILE.csv")
     asked = parser.parse_args()
