@@ -9,7 +9,7 @@ TIMES = frozenset(
         "unix_time", "elapsed", "elapsed_time", "time_elapsed", "seconds", "zeit", "uhrzeit",
         "zeitstempel", "datum_zeit", "datum_uhrzeit", "tid", "tidspunkt", "tijd", "tiempo", "hora",
         "heure", "temps", "tempo", "horodatage", "rosbagtimestamp", "ts", "gps_time", "gnss_time",
-        "log_time",
+        "log_time", "dateserial", "date_serial", "serial_date", "datenum", "excel_date", "excel_time",
     )
 )  # fmt: skip
 DATES = frozenset(("date", "datum", "dato", "fecha"))
@@ -42,6 +42,8 @@ def is_time(name: str) -> bool:
 
     >>> [is_time(name) for name in ("time_utc", "DateTime", "t_ms", "utc", "z", "time_constant")]
     [True, True, True, True, False, False]
+    >>> is_time("DateSerial"), is_time("datenum"), is_time("Excel date"), is_time("serial")
+    (True, True, True, False)
     """
     words = bare_words(name)
     if not words:
