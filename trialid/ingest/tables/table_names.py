@@ -9,7 +9,7 @@ TIMES = frozenset(
         "unix_time", "elapsed", "elapsed_time", "time_elapsed", "seconds", "zeit", "uhrzeit",
         "zeitstempel", "datum_zeit", "datum_uhrzeit", "tid", "tidspunkt", "tijd", "tiempo", "hora",
         "heure", "temps", "tempo", "horodatage", "rosbagtimestamp", "ts", "gps_time", "gnss_time",
-        "log_time", "dateserial", "date_serial", "serial_date", "datenum", "excel_date", "excel_time",
+        "log_time", "dateserial", "date_serial", "serial_date", "datenum", "excel_date",
     )
 )  # fmt: skip
 DATES = frozenset(("date", "datum", "dato", "fecha"))
