@@ -36,8 +36,11 @@ def test_each_window_holds_manoeuvres_whole_and_none_the_harbour_alone() -> None
     assert right >= windows - 1
 
 
-def test_what_is_short_or_mostly_manoeuvre_is_one_trial() -> None:
-    for seed in DAYS:
+@pytest.mark.parametrize(
+    "days", [DAYS[:5], pytest.param(DAYS[5:], marks=pytest.mark.study(turn="each"))]
+)
+def test_what_is_short_or_mostly_manoeuvre_is_one_trial(days: range) -> None:
+    for seed in days:
         trial, day = sail_day(seed, STEERED)
         found = windows_of(trial, day.length, day.speed)
         assert len(found) != 1
