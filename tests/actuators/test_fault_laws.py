@@ -48,7 +48,7 @@ def test_what_is_stuck_gives_a_share_of_the_thrust_at_its_limit(name: str, squar
 def test_of_a_pod_the_drive_is_stuck_apart_from_the_angle() -> None:
     assert EFFECTS["pod_stuck"].signals == ("pod_angle",)
     assert EFFECTS["pod_share_stuck"].signals == ("pod",)
-    assert "square of pod = held_pod_share of that at " in EFFECTS["pod_share_stuck"].equation
+    assert "its square = held_pod_share of that at " in EFFECTS["pod_share_stuck"].equation
 
 
 def test_reversed_and_exchanged_do_what_they_say() -> None:

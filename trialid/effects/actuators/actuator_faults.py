@@ -187,7 +187,7 @@ def _held_drive(
 
     by_share = one.command == "share"
     unit = "" if by_share else f" {COMMANDS[one.command]}"
-    what = f"square of {one.name}" if by_share else "thrust"
+    what = "its square" if by_share else "thrust"
     return f"{what} = {held} of that at {full:.3g}{unit}", drive, _HELD_THRUST
 
 
