@@ -150,7 +150,9 @@ SHARES = (
 
 
 @pytest.mark.parametrize(("power", "named"), [(1.0, True), (1.5, True), (2.0, False)])
-@pytest.mark.parametrize("seed", range(41, 44))
+@pytest.mark.parametrize(
+    "seed", [41, *(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in (42, 43))]
+)
 def test_thrust_that_is_in_proportion_to_a_share_is_named(tmp_path, seed, power, named) -> None:
     """What a command of half gives is a quarter of full in the model, as of revolutions."""
     rng = np.random.default_rng(seed)

@@ -79,7 +79,11 @@ def start(effect: Effect) -> dict[str, float]:
     return found
 
 
-@pytest.mark.parametrize("name", [n for n in CATALOGUE if n not in KNOWN_SHIP | {*HIDDEN}])
+NAMES = [n for n in CATALOGUE if n not in KNOWN_SHIP | {*HIDDEN}]
+IN_TURN = [pytest.param(n, marks=pytest.mark.study(turn="each")) for n in NAMES]
+
+
+@pytest.mark.parametrize("name", [n if i % 4 == 0 else IN_TURN[i] for i, n in enumerate(NAMES)])
 def test_an_effect_comes_back(name: str) -> None:
     effect = CATALOGUE[name]
     truth = {n: p.start for n, p in effect.parameters.items()}

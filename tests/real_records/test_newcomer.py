@@ -112,7 +112,13 @@ def true_GM(model, seconds):
     return (2.0 * np.pi / seconds) ** 2 * inertia / (rho * g * nabla)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case",
+    [
+        n if n in ("ferry", "coaster") else pytest.param(n, marks=pytest.mark.study(turn="each"))
+        for n in CASES
+    ],
+)
 def test_as_begun_the_fit_is_sound_and_no_sensor_is_absurd(case, tmp_path):
     """Ours: 18.5, 10.0, 21.8, 27.7, 19.0, 22.3 %; 18.9, 10.0, 22.2, 27.9, 19.1, 22.5 % from S-175.
 

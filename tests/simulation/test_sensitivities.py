@@ -117,7 +117,7 @@ def relative(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.max(np.abs(a - b) / np.where(size == 0.0, 1.0, size)))
 
 
-@pytest.mark.parametrize("substeps", [1, 3])
+@pytest.mark.parametrize("substeps", [1, pytest.param(3, marks=pytest.mark.study(turn="each"))])
 @pytest.mark.parametrize("name", VARIANTS)
 def test_every_column_is_the_derivative_of_the_rk4_map(
     name: str, substeps: int, everything: ShipModel, lively: Callable[..., Trial], tmp_path: Path
