@@ -117,8 +117,8 @@ def remarks(fit: Fit) -> tuple[str, ...]:
 def _other_signs(fit: Fit, said: Callable[[str, float], str]) -> list[str]:
     """Numbers of a sign that no ship has.
 
-    Of a rudder where nothing else in the model is of it: with which `--auto` ended for an
-    outsider's ship in wind was an eighth of what it is, and turned her the other way.
+    Ndelta where nothing else in the model is of the rudder: that with which `--auto` ended for an
+    outsider's ship in wind was an eighth of the true one, and of the other sign.
     """
     known = {x.name for x in fit.problem.unknowns}
     driven = [

@@ -33,9 +33,11 @@ def own_clocks(fit: "Fit", accuracy: Accuracy) -> tuple[str, ...]:
     known = {p.name: p.standard_error for p in accuracy.parameters}
     least = LEAST * time_per_length(fit.model, fit.problem.trials)
     names = [t.name for t in fit.problem.trials]
+    steered = {"delta", "delta_order"} & {*fit.problem.simulator.equations.inputs}
+    driver = "the rudder" if steered else "what drives her"
     return tuple(
-        f"in {name} {c} comes {abs(off):.2g} s {'later' if off > 0.0 else 'sooner'} after the "
-        "rudder than in the others: a clock is off there, most likely the rudder's where more than "
+        f"in {name} {c} comes {abs(off):.2g} s {'later' if off > 0.0 else 'sooner'} after {driver} "
+        f"than in the others: a clock is off there, most likely that of {driver} where more than "
         f"one output does so (a `delay` of {-off:.2g} s more in it), or what the model lacks looks "
         "like it"
         for c in fit.problem.outputs

@@ -229,8 +229,8 @@ def _unclear(run: Result) -> Iterable[Advice]:
     if held := run.verdict.held_as_well:
         yield Advice(
             f"Add {wording.count_of(len(held), 'number')} to [identify] free, about her file "
-            'by priors = "ship", and run again; `trialid run --auto` does so where they '
-            "are there, and keeps them where no held-out error rises:",
+            'by priors = "ship", and run again; with these priors `trialid run --auto` does so, '
+            "and keeps what raises no held-out error:",
             ", ".join(map(quote, held)),
         )
         return
