@@ -41,7 +41,7 @@ def test_shares_come_back_from_pulse_widths_with_their_own_ends(tmp_path: Path) 
 
 @pytest.mark.study(turn=4)
 def test_from_the_log_to_a_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The Otter's damping that is there at rest is not in the first model, and is named."""
+    """Of what the first model lacks, sway and a lag, the record does not tell which is missed."""
     monkeypatch.chdir(tmp_path)
     for name, seed in (("a", 711), ("b", 712)):
         skid_steer.write(tmp_path / f"{name}.bin", seed, duration=90.0)
@@ -53,8 +53,9 @@ def test_from_the_log_to_a_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert 'command = "share"' in (tmp_path / "first_trial_ship.toml").read_text(encoding="utf-8")
     found = result_of(tmp_path / "runs" / "first_trial" / "result.json")
     assert found.fit.converged
-    assert found.verdict.effect == "still_water_surge"
-    assert found.fit.eps_rmsn < 0.4
+    assert found.verdict.kind == "cannot tell"
+    assert found.verdict.family == ("sway_in_turns", "thrusters_lag")
+    assert found.fit.eps_rmsn < 0.2
 
 
 def test_cables_that_are_exchanged_are_asked(tmp_path: Path, monkeypatch) -> None:

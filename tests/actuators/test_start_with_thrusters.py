@@ -48,7 +48,7 @@ def test_a_boat_of_two_shafts_is_begun_and_fitted(tmp_path, monkeypatch) -> None
     assert "side confirmed by the turn" in " ".join(done.stdout.split())
     text = (tmp_path / "first_trial.toml").read_text(encoding="utf-8")
     assert 'thruster_port      = { channel = "rpm_port", unit = "rpm" }' in text
-    assert 'free = ["k_ahead", "k_astern", "Xuu", "I_zz", "Nr0", "Nrar0"]' in text
+    assert 'free = ["k_ahead", "k_astern", "Xu0", "Xuu", "I_zz", "Nr0", "Nrar0"]' in text
     ship = trialid.read_ship(tmp_path / "first_trial_ship.toml")
     assert [(a.name, a.y, a.command) for a in ship.actuators] == [
         ("thruster_port", -0.4, "revolutions"),

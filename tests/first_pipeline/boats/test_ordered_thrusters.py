@@ -20,11 +20,11 @@ def test_a_gain_astern_is_free_where_one_trial_goes_astern(tmp_path: Path) -> No
         p = pushes(i, astern=astern)
         logs.append(log(tmp_path / f"run{i}.csv", p, 100.0 * p, PERCENT))
     text = text_of(tmp_path, *logs)
-    assert '"k_ahead", "k_astern", "Xuu"' in text
+    assert '"k_ahead", "k_astern", "Xu0", "Xuu"' in text
     assert "astern: nothing" not in text
     text = text_of(tmp_path, logs[0], logs[1], logs[3])
     assert "# no fitted trial goes astern: nothing tells it" in text
-    assert '"k_ahead", "Xuu"' in text
+    assert '"k_ahead", "Xu0"' in text
 
 
 def test_pulses_go_astern_below_those_at_rest(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from trialid.identification.nuisance.of_each_trial import Nuisance
 from trialid.ship.effect import Effect
 
 COVARIANCE: Final = "covariance"
-ARRAYS: Final = ("gram", "moves", "deviations")
+ARRAYS: Final = ("gram", "moves", "deviations", "scales")
 
 
 class Named(Protocol):
