@@ -1,6 +1,7 @@
 """Changes of parameters: fouling and a step dated, and hardly any where there is none."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -79,6 +80,18 @@ def test_fouling_and_a_step_of_gm_are_found_and_dated(seed: int) -> None:
     assert step.relative == pytest.approx(step.size, rel=0.02)
     drag = [row for row in found if row.parameter == "Xuu"]
     assert sum(row.size for row in drag) == pytest.approx(0.2, abs=0.04)
+
+
+def test_a_resistance_that_grows_is_more_of_what_it_was() -> None:
+    """Below zero as its letter is: of -1.0 that becomes -1.2 it is a fifth, not less a fifth."""
+    runs, fitted = fleet(41, drift=0.2)
+    below = [
+        replace(x, value=-x.value, likely_low=-x.likely_high, likely_high=-x.likely_low)
+        for x in fitted
+    ]
+    drag = [row for row in changes_alone(runs, below) if row.parameter == "Xuu"]
+    assert sum(row.size for row in drag) == pytest.approx(-0.2, abs=0.04)
+    assert sum(row.relative or 0.0 for row in drag) == pytest.approx(0.2, abs=0.04)
 
 
 def test_a_drift_that_begins_is_dated() -> None:

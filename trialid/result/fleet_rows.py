@@ -139,7 +139,8 @@ class ChangeRow:
     """How much it is: of a drift, from its begin to the last voyage; of what varies, how far that
     voyage lies off."""
     relative: float | None
-    """The same as a share of the level before."""
+    """The same as a share of the level before, above zero where it grows: a resistance of -0.0012
+    that becomes -0.0017 grows by 0.4."""
     p_value: float
     """How often a fleet without any change shows this much in any parameter of any ship."""
     beyond_likely: bool

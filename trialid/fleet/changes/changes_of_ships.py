@@ -96,7 +96,7 @@ def _row(rows: Sequence[FittedRow], y: Estimates, found: Found) -> ChangeRow:
         earliest=rows[found.ends[0] - 1].voyage,
         latest=rows[found.ends[1]].voyage,
         size=found.size,
-        relative=found.size / abs(found.level) if found.level else None,
+        relative=found.size / found.level if found.level else None,
         p_value=found.p_value,
         beyond_likely=bool(abs(found.size) > open_),
     )
@@ -113,7 +113,7 @@ def _varies(rows: Sequence[FittedRow], found: Varies) -> ChangeRow:
         earliest=rows[0].voyage,
         latest=rows[-1].voyage,
         size=found.size,
-        relative=found.size / abs(found.level) if found.level else None,
+        relative=found.size / found.level if found.level else None,
         p_value=found.p_value,
         beyond_likely=found.beyond,
     )
