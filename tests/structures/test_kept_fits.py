@@ -155,3 +155,20 @@ def test_what_cannot_be_chosen_is_said() -> None:
     assert unfinished.startswith("Not compared, as their searches did not arrive: `cubic`; with")
     assert first.endswith("is the only structure that stands, so there was no choice.")
     assert "1 of 2 choices are the same; without b: none." in second
+
+
+@pytest.mark.parametrize(("without", "sure"), [("race", True), ("modulus", False)])
+def test_a_choice_that_hangs_on_single_trials_is_not_said_as_if_it_were_sure(without, sure) -> None:
+    """An outsider's hull without a race got one, and without one trial four times of five none."""
+    rows = (
+        StructureRow(name="race", parameters=10, eps_rmsn_left_out=0.0442, behind=0.0),
+        StructureRow(name="modulus", parameters=9, eps_rmsn_left_out=0.0451, behind=0.0009),
+    )
+    again = dict.fromkeys("abcd", without) | {"e": "race"}
+    found = Structures(
+        trials=tuple("abcde"), rows=rows, best="race", chosen="race", chosen_without=again
+    )
+    first = sentences(found)[0]
+    assert first.endswith("none that is simpler is as good.") == sure
+    told = "; but without one of its trials 4 of 5 choices are modulus: not sure."
+    assert first.endswith(told) != sure

@@ -1,5 +1,6 @@
 """What comparing structures found, in sentences: the choice, and how far it can be relied on."""
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import Final
 
@@ -25,11 +26,20 @@ def _choice(found: Structures) -> str:
     if sum(row.why_not is None for row in found.rows) == 1:
         return f"{_told(chosen)} is the only structure that stands, so there was no choice."
     if chosen == best:
-        return f"{_told(best)} is the best, and none that is simpler is as good."
+        return f"{_told(best)} is the best, and none that is simpler is as good{_not_sure(found)}."
     return (
         f"{_told(chosen)} is the simplest that is as good as the best, {_told(best)}: "
-        f"{_points(chosen)} percentage points behind."
+        f"{_points(chosen)} percentage points behind{_not_sure(found)}."
     )
+
+
+def _not_sure(found: Structures) -> str:
+    """What most choices without one trial are, where they are another; else empty."""
+    again = found.chosen_without
+    [(name, times)] = Counter(again.values()).most_common(1) or [(None, 0)]
+    if name in (None, found.chosen) or 2 * times <= len(again):
+        return ""
+    return f"; but without one of its trials {times} of {len(again)} choices are {name}: not sure"
 
 
 def _unforetold(found: Structures) -> Iterator[str]:
