@@ -9,14 +9,16 @@ something that may be missing and beta its size, the parameters move by
 and what the record says of beta follows from its visible trace, S less what A reaches, with a wide
 prior of its typical size. Each thing that may be missing makes a model; they are averaged by how
 well they stand: Hoeting et al. (1999), Bayesian model averaging: a tutorial, Statistical Science
-14. Numbers that were held fixed are part of every model, each uncertain by what its source says.
+14. Numbers that were held fixed are part of every model, each uncertain by what its source says,
+and so are the scales of the logs: of these a residual tells nothing, for where something is missing
+it looks like a scale.
 
 All of that is linear and knows no ends, as a normal distribution does; a parameter has them. Its
 range ends where the search did: a GM of 0.012 m was likely from -0.012 m (`ranges`).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -24,6 +26,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit  # scipy.stats would take another 0.4 s to import
 
 from trialid.accuracy.one_missing import Reduced, Rival, posterior
+from trialid.accuracy.ranges import LOG_SCALES
 from trialid.arrays import Vector
 
 WIDE: Final = 2.0
@@ -53,9 +56,11 @@ class Rows:
     held, deviations
         Columns of what was held fixed (M, n_h) and how uncertain each is (n_h,).
     S
-        Columns of what may be missing; (M, n_S).
+        Columns of what may be missing, and last of scales of logs; (M, n_S).
     level
         What one independent row is uncertain by.
+    scales
+        How uncertain the last columns of `S` are, whatever is missing; (n_s,).
     """
 
     residual: Vector
@@ -65,6 +70,7 @@ class Rows:
     deviations: Vector
     S: Vector
     level: float
+    scales: Vector = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True)
@@ -77,7 +83,7 @@ class Averaged:
         Expected move and its variance for each coarseness, in the parameter's unit;
         (len(COARSE), n_theta).
     widest
-        What widens each most: a rival's name, or nothing where it is what was held fixed.
+        What widens each most: a rival's name, scales, or nothing where it is what was held fixed.
     """
 
     shifts: Vector
@@ -131,14 +137,16 @@ class Standing:
         models = [_model(known, r) for r in (Rival("", (), ()), *self.rivals)]
         weights = self._weights([m.cost for m in models])
         moves, own = np.array([m.shift for m in models]), np.array([m.variance for m in models])
+        scaled = np.sum(known.by_scales**2, axis=1)
         shifts = weights @ moves
         about = (moves - shifts[:, None]) ** 2
-        variances = np.einsum("cm,cmi->ci", weights, own + about)
+        variances = np.einsum("cm,cmi->ci", weights, own + about) + scaled
         # what is held fixed widens every model alike: a rival is named for what it adds
         added = np.maximum(own - own[0] + (moves - moves[0]) ** 2, 0.0)
         parts = weights.sum(axis=0)[:, None] * added
         parts[0] = len(COARSE) * own[0]
-        names = ("", *(r.name for r in self.rivals))
+        parts = np.vstack([parts, len(COARSE) * scaled])
+        names = ("", *(r.name for r in self.rivals), LOG_SCALES)
         return Averaged(shifts, variances, tuple(names[i] for i in parts.argmax(axis=0)))
 
     def draw(self, number: int, rng: np.random.Generator) -> "Drawn":
@@ -155,6 +163,10 @@ class Standing:
             rows, one = np.flatnonzero(which == m), found[m]
             drawn = one.drawn(len(rows), rng)
             columns[np.ix_(rows, np.array(one.places, dtype=int) - 1)] = drawn * one.sizes
+        scales = self.known.scales
+        columns[:, columns.shape[1] - len(scales) :] = scales * rng.standard_normal(
+            (number, len(scales))
+        )
         return Drawn(which - 1, -columns @ self.known.moves[:, 1:].T, columns)
 
     def _weights(self, costs: Sequence[float]) -> Vector:
@@ -217,7 +229,12 @@ def _reduce(rows: Rows) -> Reduced:
     variance = max(rows.level**2, 1e-30)
     squares = float(rows.residual @ rows.residual)
     return Reduced(
-        gram, answer / sizes[:, None], rows.deviations, variance, max(squares / variance, 1.0)
+        gram=gram,
+        moves=answer / sizes[:, None],
+        deviations=rows.deviations,
+        scales=rows.scales,
+        variance=variance,
+        independent=max(squares / variance, 1.0),
     )
 
 

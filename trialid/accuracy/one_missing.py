@@ -32,19 +32,26 @@ class Rival:
     share: float = 1.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Reduced:
     """Sums of products with the fitted parameters taken out; the residual first, then the held.
 
     `moves` is what the parameters, or what follows from them, do per unit of each column, with its
-    sign turned; (n, 1 + n_h + n_S).
+    sign turned; (n, 1 + n_h + n_S). The last columns are of scales, uncertain by `scales`.
     """
 
     gram: Vector
     moves: Vector
     deviations: Vector
+    scales: Vector
     variance: float
     independent: float
+
+    @property
+    def by_scales(self) -> Vector:
+        """Moves by a deviation of each scale; (n, n_s)."""
+        first = self.moves.shape[1] - len(self.scales)
+        return np.asarray(self.moves[:, first:] * self.scales)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,6 +11,7 @@ import numpy as np
 from trialid.accuracy.likely import WIDE, Averaged, Rows, Standing, stand
 from trialid.accuracy.one_missing import Rival
 from trialid.arrays import Vector
+from trialid.diagnosis.records.log_scales import log_scales
 from trialid.diagnosis.restated import restates
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
@@ -61,14 +62,16 @@ def doubts(augmented: Augmented) -> Doubts:
     ship = fit.problem.simulator.model
     deviations = [abs(ship.value(n)) * ship.ship.share_off(n) for n in augmented.held]
     S, traces = _may_be_missing(augmented)
+    of_scales, scales = log_scales(fit)
     rows = Rows(
         residual=augmented.residual,
         psi=augmented.psi,
         priors=_as_contradicted(prior_rows(fit), fit),
         held=augmented.H,
         deviations=np.array(deviations),
-        S=S,
+        S=np.column_stack([S, of_scales]),
         level=fit.level,
+        scales=scales,
     )
     ways = Counter(t.effect.name for t in traces)
     standing = stand(rows, [_rival(t, ways[t.effect.name]) for t in traces])

@@ -21,9 +21,7 @@ from trialid.inspection.name_words import words
 from trialid.inspection.sketch import Vector, on_one_clock
 from trialid.inspection.usual_units import to_si
 from trialid.names import units
-
-SLOPES: Final = {"r": "psi", "p": "phi"}
-"""A rate and the angle it is the slope of."""
+from trialid.names.quantities import SLOPES
 
 SURE: Final = 0.95
 """Correlation from which a channel without a telling name is taken to be the rate of an angle."""

@@ -240,6 +240,9 @@ QUANTITIES = SIGNALS | PARTICULARS
 ACCELERATIONS = ("u_dot", "v_dot", "p_dot", "r_dot")
 """Signals that the equations give and only a sensor may read."""
 
+SLOPES = {"r": "psi", "p": "phi"}
+"""Rates and their angles: each is the slope of the other by definition."""
+
 POSITION = ("x", "y")
 """Where the ship is; no force depends on it, and a ship length is its natural measure."""
 

@@ -186,10 +186,10 @@ class ParameterRow:
 
     `freedom` are the degrees of freedom of `standard_error`. `likely` is where the value lies at
     95 % whatever is missing, in `unit`; `widened_by` the effect that widens this most, empty where
-    that is what was held fixed, `another GM` where the record does not tell it, `the usual forces
-    at once` where all together do, `sensors that are not early` where one was taken to be. `prior`
-    is what was known of it beforehand, mean and standard deviation; `prior_share` how much of what
-    is known now that is.
+    that is what was held fixed, `scales of the logs` where these may be off by as much, `another
+    GM` where the record does not tell it, `the usual forces at once` where all together do,
+    `sensors that are not early` where one was taken to be. `prior` is what was known of it
+    beforehand, mean and standard deviation; `prior_share` how much of what is known now that is.
     """
 
     name: str

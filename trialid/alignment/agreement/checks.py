@@ -12,11 +12,11 @@ import numpy as np
 from trialid.alignment.agreement import relation, signs
 from trialid.alignment.agreement.axes import check_axes
 from trialid.alignment.agreement.channel_finding import Finding
-from trialid.alignment.agreement.slopes import LOOSE, MOVING, SLOPES, TURNS, check_slopes
+from trialid.alignment.agreement.slopes import LOOSE, MOVING, TURNS, check_slopes
 from trialid.alignment.clocks import EMPTIEST, FEWEST, Grid, Series, in_time_order
 from trialid.alignment.resample import resample
 from trialid.arrays import Mask, Vector
-from trialid.names.quantities import RUDDERS
+from trialid.names.quantities import RUDDERS, SLOPES
 from trialid.trial import Trial
 
 STILL = 0.1
@@ -38,7 +38,7 @@ def of_series(
     """
     found: list[Finding] = []
     whole = trial_of_series(series)
-    for pair in SLOPES:
+    for pair in SLOPES.items():
         both = trial_of_series({name: series[name] for name in pair if name in series})
         found += check_slopes(both, stated or {}, whole or both) if both is not None else ()
     if whole is not None:

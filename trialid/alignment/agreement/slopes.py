@@ -16,11 +16,9 @@ from trialid.alignment.agreement.rate_drift import drift_finding, drift_of, late
 from trialid.alignment.agreement.relation import Relation
 from trialid.errors import UnitError
 from trialid.names import units
-from trialid.names.quantities import MOTIONS, SIGNALS
+from trialid.names.quantities import MOTIONS, SIGNALS, SLOPES
 from trialid.trial import Contradiction, Trial
 
-SLOPES = (("r", "psi"), ("p", "phi"))
-"""Each is the slope of the other by definition."""
 CLEAR = 0.9
 """Correlation above which a gain is told; real rates of turn reach 0.95 to 1.00."""
 LOOSE = 0.7
@@ -55,7 +53,7 @@ UNITS = ("rad/s", "deg/s", "deg/min", "rad", "deg")
 
 def check_slopes(trial: Trial, stated: Mapping[str, str], beside: Trial) -> Iterator[Finding]:
     """Each rate against its angle; `beside` holds all signals, to find one under a wrong name."""
-    for rate, angle in SLOPES:
+    for rate, angle in SLOPES.items():
         if rate in trial.signals and angle in trial.signals:
             valid = trial.valid[rate] & trial.valid[angle]
             y, x = trial.signals[rate], trial.signals[angle]

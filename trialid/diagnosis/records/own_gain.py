@@ -14,13 +14,11 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.diagnosis.records.further import is_no_further, stands_out
 from trialid.diagnosis.records.left_without import OTHERS
+from trialid.diagnosis.records.log_scales import rows_of, slope_of_scale, with_a_scale
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.errors import TrialidError
 from trialid.identification.adequacy import why_no_fit
 from trialid.identification.fit import Fit, identify
-from trialid.identification.output_error import residual_of_trial, stretches
-from trialid.names.quantities import OVER_GROUND, SIGNALS
-from trialid.simulation.integrate import Departure, record_for
 from trialid.trial import Trial
 
 FALL: Final = 0.2
@@ -43,8 +41,6 @@ far beyond 1 and twice decide alike of effects; twice leaves three of the 18 wit
 TRIED: Final = 3
 """Of what slopes foretell most of; fitted."""
 
-STEP: Final = 0.01
-"""Of the factor, by which its slope is found."""
 ARRIVED: Final = 0.003
 """Of the factor, by which it no longer moves: a third of a percent is no other calibration."""
 ROUNDS: Final = 4
@@ -198,15 +194,9 @@ def _squares(norm: Fit, fit: Fit, factor: Factor | None, use: str) -> float:
 
 
 def _factors(fit: Fit) -> Iterator[Factor]:
-    """Of every log that is read, but of directions and of what is told over ground."""
-    read = (*fit.problem.simulator.equations.inputs, *fit.problem.outputs)
-    round_about = {a.angle for a in fit.model.ship.actuators if a.kind == "azimuth"}
-    for trial in fit.problem.trials:
-        records = (record_for(trial, n) for n in read)
-        for name in dict.fromkeys(n for n in records if n):
-            known = SIGNALS.get(name)
-            if name not in {*OVER_GROUND, *round_about} and not (known and known.angle):
-                yield Factor(trial.name, name)
+    """Of every log that is read and has a scale."""
+    for place, trial in enumerate(fit.problem.trials):
+        yield from (Factor(trial.name, name) for name in with_a_scale(fit.problem, place))
 
 
 @dataclass(frozen=True)
@@ -239,13 +229,7 @@ class _Explained:
 def _foretold(fit: Fit, explained: _Explained, factor: Factor) -> tuple[float, float]:
     """Share of the squared error that goes by the slope of a factor, and the factor's step."""
     place = next(i for i, t in enumerate(fit.problem.trials) if t.name == factor.trial)
-    moved = replace(factor, by=1.0 + STEP).taken(fit.problem.trials)
-    after = residual_of_trial(replace(fit.problem, trials=moved), fit.theta, place)
-    if isinstance(after, Departure):
-        return 0.0, 0.0
-    parts = [p.rows for p in stretches(fit.problem) if p.trial == place]
-    rows = slice(parts[0].start, parts[-1].stop)
-    slope = (fit.residual[rows] - after) / STEP
+    rows, slope = rows_of(fit.problem, place), -slope_of_scale(fit, place, factor.signal)
     inside = explained.basis[rows].T @ slope
     whole = float(slope @ slope)
     square, moment = whole - float(inside @ inside), float(slope @ explained.left[rows])

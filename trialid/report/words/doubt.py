@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from trialid.accuracy.ranges import ANOTHER_GM, IN_TIME, USUAL_FORCES
+from trialid.accuracy.ranges import ANOTHER_GM, IN_TIME, LOG_SCALES, USUAL_FORCES
 from trialid.names import wording
 from trialid.names.wording import named_together
 from trialid.result.finding_rows import VerdictPart
@@ -23,6 +23,7 @@ WIDENED: Final = {
     ANOTHER_GM: "as the record does not tell GM",
     USUAL_FORCES: "as all forces that a hull usually has, each small, may be there at once",
     IN_TIME: "as no sensor is early",
+    LOG_SCALES: "as a log may read a few percent too much or too little in all trials alike",
 }
 """Why a range is wide, but for an effect that may be missing."""
 

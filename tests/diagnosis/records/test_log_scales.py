@@ -1,0 +1,132 @@
+"""A log may read too much in all trials alike: no residual shows it, and ranges count with it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import s175q
+
+from trialid.accuracy.likely import Rows, stand
+from trialid.accuracy.ranges import LOG_SCALES
+from trialid.diagnosis.may_be_off import may_be_off
+from trialid.diagnosis.noise.split import split
+from trialid.diagnosis.records.log_scales import BETTER, OFF, log_scales, with_a_scale
+from trialid.diagnosis.search.augment import augment
+from trialid.diagnosis.trust import accuracy_of
+from trialid.identification.fit import Fit, identify
+from trialid.identification.output_error import residual_at
+
+TRUTH = s175q.MODEL.value("Ndelta")
+MODEL = replace(s175q.MODEL, ship=replace(s175q.MODEL.ship, uncertainty={"default": 0.0}))
+"""Of which nothing else is in doubt."""
+
+
+def fitted(signal="", by=1.0) -> Fit:
+    """Zig-zags of 20, 10 and 5 deg; in all of them a log reads what is true times a factor."""
+    rng, made = np.random.default_rng(37), []
+    for angle in (20, 10, 5):
+        trial = s175q.zigzag(angle)
+        trial = s175q.with_noise(trial, *(0.3 * x for x in s175q.white(rng, trial.samples)))
+        scaled = {n: x * by if n == signal else x for n, x in trial.signals.items()}
+        made.append(replace(trial, use="fit", signals=scaled))
+    settings = replace(s175q.SETTINGS, free=("Yv", "Yr", "Nv", "Nr", "Ydelta", "Ndelta", "Kdelta"))
+    return identify(made, MODEL, settings)
+
+
+def ranges(fit: Fit) -> dict[str, tuple[float, float]]:
+    augmented = augment(fit, {})
+    parts, _ = split(fit, augmented, {})
+    return {r.name: r.likely for r in accuracy_of(fit, parts, may_be_off(augmented)).physical}
+
+
+@pytest.fixture(scope="module")
+def as_it_is() -> Fit:
+    return fitted()
+
+
+def test_no_error_tells_of_a_rudder_that_reads_too_much(as_it_is: Fit) -> None:
+    fit = fitted("delta", 1.05)
+    assert fit.eps_rmsn == pytest.approx(as_it_is.eps_rmsn, rel=0.02)
+    assert 0.94 < fit.estimates["Ndelta"] / as_it_is.estimates["Ndelta"] < 0.96
+
+
+@pytest.mark.parametrize(("signal", "by"), [("delta", 1.04), ("delta", 0.96)])
+def test_the_range_of_what_it_moves_holds_the_truth(signal, by) -> None:
+    low, high = ranges(fitted(signal, by))["Ndelta"]
+    assert low < TRUTH < high
+
+
+def test_without_it_the_range_does_not(monkeypatch) -> None:
+    monkeypatch.setattr("trialid.diagnosis.records.log_scales.OFF", 0.0)
+    monkeypatch.setattr("trialid.diagnosis.records.log_scales.BETTER", 0.0)
+    low, high = ranges(fitted("delta", 1.04))["Ndelta"]
+    assert not low < TRUTH < high
+
+
+@pytest.mark.parametrize("signal", ["delta", "r", "phi"])
+def test_slopes_against_logs_that_are_scaled_both_ways(as_it_is: Fit, signal: str) -> None:
+    """And none in the parameters: what is left of a residual at the same ones."""
+    columns, off = log_scales(as_it_is)
+    names = with_a_scale(as_it_is.problem, 0)
+    place = names.index(signal)
+    ends = []
+    for by in (0.999, 1.001):
+        trials = tuple(
+            replace(t, signals={**t.signals, signal: by * t.signals[signal]})
+            for t in as_it_is.problem.trials
+        )
+        problem = replace(as_it_is.problem, trials=trials)
+        ends.append(residual_at(problem, as_it_is.theta))
+    both = (ends[1] - ends[0]) / 0.002
+    assert columns[:, place] == pytest.approx(both, rel=1e-2, abs=1e-2 * np.abs(both).max())
+    assert off[place] == OFF  # no heading is logged beside the rate
+
+
+def test_a_speed_log_and_a_rate_beside_its_heading_are_better_known() -> None:
+    trial = s175q.zigzag(20)
+    heading = np.cumsum(trial.signals["r"]) * trial.period
+    more = {"u": 7.33 - 40.0 * np.abs(trial.signals["r"]), "psi": heading}
+    whole = {n: np.ones(trial.samples, dtype=bool) for n in more}
+    trial = replace(trial, signals=trial.signals | more, valid=trial.valid | whole)
+    settings = replace(s175q.SETTINGS, free=("Nv", "Nr", "Ndelta"), outputs=("u", "r", "psi"))
+    states = (*MODEL.states, "psi")
+    fit = identify([trial], replace(MODEL, states=states), settings)
+    names, off = with_a_scale(fit.problem, 0), log_scales(fit)[1]
+    assert dict(zip(names, off, strict=True)) == {"delta": OFF, "n": OFF, "u": BETTER, "r": BETTER}
+
+
+@pytest.mark.parametrize("residual", [0.0, 30.0])
+def test_they_widen_a_range_whatever_is_left(residual: float) -> None:
+    """Where something is missing a residual looks like a scale: it does not tell of one."""
+    psi, other = np.eye(6)[:, :1], np.eye(6)[:, 1]
+    column = 0.8 * psi[:, 0] + 0.5 * other
+    rows = Rows(
+        residual=residual * other,
+        psi=psi,
+        priors=np.zeros((1, 2)),
+        held=np.zeros((6, 0)),
+        deviations=np.zeros(0),
+        S=column[:, None],
+        level=1.0,
+        scales=np.array([0.03]),
+    )
+    found = stand(rows, []).average()
+    assert found.shifts == pytest.approx(0.0)
+    assert np.sqrt(found.variances) == pytest.approx(0.8 * 0.03)
+    assert found.widest == (LOG_SCALES,)
+
+
+def test_draws_are_off_by_as_much() -> None:
+    psi = np.eye(6)[:, :1]
+    rows = Rows(
+        residual=np.zeros(6),
+        psi=psi,
+        priors=np.zeros((1, 2)),
+        held=np.zeros((6, 0)),
+        deviations=np.zeros(0),
+        S=0.8 * psi,
+        level=1.0,
+        scales=np.array([0.03]),
+    )
+    moves = stand(rows, []).draw(4000, np.random.default_rng(1)).moves
+    assert np.std(moves) == pytest.approx(0.8 * 0.03, rel=0.05)

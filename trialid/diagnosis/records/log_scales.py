@@ -1,0 +1,80 @@
+"""How far every log's scale may be off: part of each model, as what is held fixed is.
+
+A rudder's feedback that reads a tenth too much in all trials alike leaves the same error, and a
+rudder that does a tenth less: no residual shows it.
+"""
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from trialid.arrays import Vector
+from trialid.identification.fit import Fit
+from trialid.identification.output_error import Problem, residual_of_trial, stretches
+from trialid.names.quantities import OVER_GROUND, SIGNALS, SLOPES
+from trialid.simulation.integrate import Departure, record_for
+
+OFF: Final = 0.025
+"""Standard deviation of a log's scale: half of the 5 % that a rate-of-turn indicator may be off by
+(IMO resolution A.526(13)). Rudder feedbacks are 1 to 2 deg off at 35 deg, which is as much."""
+
+BETTER: Final = 0.01
+"""The same of a speed log, half of the 2 % of resolution A.824(19), and of a rate whose angle is
+logged too: those of sound gyros lie within 2 % of its slope."""
+
+SPEEDS: Final = ("u", "v")
+
+STEP: Final = 0.01
+"""Of a scale, by which its slope is found."""
+
+
+def log_scales(fit: Fit) -> tuple[Vector, Vector]:
+    """Normed rows per unit of the scale of each log, and how uncertain it is; (M, n), (n,)."""
+    problem = fit.problem
+    places = range(len(problem.trials))
+    names = dict.fromkeys(n for i in places for n in with_a_scale(problem, i))
+    off = np.array([BETTER if _is_better_known(problem, n) else OFF for n in names])
+    columns = np.zeros((len(fit.residual), len(off)))
+    for column, name in zip(columns.T, names, strict=True):
+        for place in places:
+            rows = rows_of(problem, place)
+            column[rows] = slope_of_scale(fit, place, name)
+    return columns, off
+
+
+def _is_better_known(problem: Problem, name: str) -> bool:
+    angle = SLOPES.get(name)
+    return name in SPEEDS or all(angle in t.signals for t in problem.trials)
+
+
+def with_a_scale(problem: Problem, place: int) -> tuple[str, ...]:
+    """Logs that are read of a fitted trial, but of directions and of what is told over ground."""
+    read = (*problem.simulator.equations.inputs, *problem.outputs)
+    round_about = {a.angle for a in problem.simulator.model.ship.actuators if a.kind == "azimuth"}
+    records = (record_for(problem.trials[place], n) for n in read)
+    return tuple(
+        name
+        for name in dict.fromkeys(n for n in records if n)
+        if name not in {*OVER_GROUND, *round_about}
+        and not (name in SIGNALS and SIGNALS[name].angle)
+    )
+
+
+def rows_of(problem: Problem, place: int) -> slice:
+    """Where the rows of a fitted trial stand in the residual."""
+    parts = [p.rows for p in stretches(problem) if p.trial == place]
+    return slice(parts[0].start, parts[-1].stop)
+
+
+def slope_of_scale(fit: Fit, place: int, name: str) -> Vector:
+    """What a unit of a log's scale adds to a trial's residual; zero where the ship then leaves."""
+    problem, trials = fit.problem, list(fit.problem.trials)
+    before = fit.residual[rows_of(problem, place)]
+    signals = trials[place].signals
+    if name not in signals:
+        return np.zeros_like(before)
+    scaled = {**signals, name: signals[name] * (1.0 + STEP)}
+    trials[place] = replace(trials[place], signals=scaled)
+    after = residual_of_trial(replace(problem, trials=tuple(trials)), fit.theta, place)
+    return np.zeros_like(before) if isinstance(after, Departure) else (after - before) / STEP
