@@ -56,7 +56,7 @@ def record(model: ShipModel, effect: Effect) -> Trial:
     signals = disturbed()
     if "delta" in effect.states:
         del signals["delta"]
-    if effect.name == "propeller_astern":
+    if effect.name.startswith("propeller_astern"):
         signals["n"] = SHAFT * (0.6 + 0.9 * np.sin(0.05 * PERIOD * np.arange(SAMPLES)))
     if effect.name == "surge_loss":
         signals["u"] = np.full(SAMPLES, 7.33)

@@ -137,7 +137,7 @@ def fit_of(ship: World, seed: int, *, exact: bool, scaled: bool = False) -> Fit:
 
 
 def off_in_scale(trials: Sequence[Trial], seed: int) -> tuple[Trial, ...]:
-    """The same logs by sensors as good as IMO asks: 5 % of a rate or an angle, 2 % of a speed."""
+    """The same logs, off by half of what IMO allows: 5 % of a rate or an angle, 2 % of a speed."""
     rng = np.random.default_rng((seed, 1))
     off = {n: 0.5 * (0.02 if n == "u" else 0.05) for n in ("delta", "u", *OUTPUTS)}
     by = {n: 1.0 + x * rng.standard_normal() for n, x in off.items()}

@@ -97,6 +97,16 @@ def propeller_astern(
     return Force(X=X_ast * back * back, Y=-2.0 * N, N=N)
 
 
+@effect(source="Fossen (1994), Guidance and Control of Ocean Vehicles: bilinear thrust, |n| u")
+def propeller_astern_advance(u, n, *, X_ast_u=Parameter(-5e-6, low=-1e-4, high=0.0)):
+    """X = X_ast_u u |n| where n < 0: a screw astern that still meets the water brakes the more.
+
+    Where a crash stop is fitted without it the hull's resistance stands in, and ahead she then
+    seems to stop in half of the way.
+    """
+    return Force(X=-0.5 * X_ast_u * u * (n - abs(n)))
+
+
 @effect(source="thrust of two shafts at some distance from the middle; size by judgement")
 def twin_screws(n_p, n_s, *, N_twin=Parameter(2e-10, low=0.0, high=1e-8)):
     """N = N_twin (n_p |n_p| - n_s |n_s|): two screws that do not turn alike."""
@@ -111,5 +121,6 @@ EFFECTS = (
     shaft_thrust,
     propeller_side_force,
     propeller_astern,
+    propeller_astern_advance,
     twin_screws,
 )
