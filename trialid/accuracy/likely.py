@@ -10,8 +10,7 @@ and what the record says of beta follows from its visible trace, S less what A r
 prior of its typical size. Each thing that may be missing makes a model; they are averaged by how
 well they stand: Hoeting et al. (1999), Bayesian model averaging: a tutorial, Statistical Science
 14. Numbers that were held fixed are part of every model, each uncertain by what its source says,
-and so are the scales of the logs: of these a residual tells nothing, for where something is missing
-it looks like a scale.
+and so are the scales of the logs.
 
 All of that is linear and knows no ends, as a normal distribution does; a parameter has them. Its
 range ends where the search did: a GM of 0.012 m was likely from -0.012 m (`ranges`).
@@ -60,7 +59,7 @@ class Rows:
     level
         What one independent row is uncertain by.
     scales
-        How uncertain the last columns of `S` are, whatever is missing; (n_s,).
+        How uncertain the last columns of `S` are beforehand, whatever is missing; (n_s,).
     """
 
     residual: Vector
@@ -163,10 +162,9 @@ class Standing:
             rows, one = np.flatnonzero(which == m), found[m]
             drawn = one.drawn(len(rows), rng)
             columns[np.ix_(rows, np.array(one.places, dtype=int) - 1)] = drawn * one.sizes
-        scales = self.known.scales
-        columns[:, columns.shape[1] - len(scales) :] = scales * rng.standard_normal(
-            (number, len(scales))
-        )
+        off = self.known.off_in_scale
+        normal = rng.standard_normal((number, len(off)))
+        columns[:, columns.shape[1] - len(off) :] = off * normal
         return Drawn(which - 1, -columns @ self.known.moves[:, 1:].T, columns)
 
     def _weights(self, costs: Sequence[float]) -> Vector:

@@ -48,10 +48,22 @@ class Reduced:
     independent: float
 
     @property
+    def off_in_scale(self) -> Vector:
+        """How far each scale may be off, beforehand and by what is left; (n_s,).
+
+        Its trace in the residual says how far it is, to the noise, were nothing else missing. What
+        is missing looks like a scale, too: what it says is believed to as much as it says.
+        """
+        last = np.s_[len(self.gram) - len(self.scales) :]
+        squares = np.maximum(np.diag(self.gram)[last], 1e-30)
+        told = self.variance / squares + (self.gram[0, last] / squares) ** 2
+        return np.asarray(self.scales * np.sqrt(told / (told + self.scales**2)))
+
+    @property
     def by_scales(self) -> Vector:
         """Moves by a deviation of each scale; (n, n_s)."""
         first = self.moves.shape[1] - len(self.scales)
-        return np.asarray(self.moves[:, first:] * self.scales)
+        return np.asarray(self.moves[:, first:] * self.off_in_scale)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import s175q
 
-from trialid.accuracy.likely import Rows, stand
+from trialid.accuracy.likely import Rows, Standing, stand
 from trialid.accuracy.ranges import LOG_SCALES
 from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.noise.split import split
@@ -95,38 +95,39 @@ def test_a_speed_log_and_a_rate_beside_its_heading_are_better_known() -> None:
     assert dict(zip(names, off, strict=True)) == {"delta": OFF, "n": OFF, "u": BETTER, "r": BETTER}
 
 
-@pytest.mark.parametrize("residual", [0.0, 30.0])
-def test_they_widen_a_range_whatever_is_left(residual: float) -> None:
-    """Where something is missing a residual looks like a scale: it does not tell of one."""
+def standing(seen: float, left: float, level: float) -> Standing:
+    """Of a parameter that takes 0.8 of a scale's trace up and leaves so much of it to see."""
     psi, other = np.eye(6)[:, :1], np.eye(6)[:, 1]
-    column = 0.8 * psi[:, 0] + 0.5 * other
     rows = Rows(
-        residual=residual * other,
+        residual=left * other,
         psi=psi,
         priors=np.zeros((1, 2)),
         held=np.zeros((6, 0)),
         deviations=np.zeros(0),
-        S=column[:, None],
-        level=1.0,
+        S=(0.8 * psi[:, 0] + seen * other)[:, None],
+        level=level,
         scales=np.array([0.03]),
     )
-    found = stand(rows, []).average()
+    return stand(rows, [])
+
+
+@pytest.mark.parametrize(
+    ("seen", "left", "level", "off"),
+    [
+        (0.0, 0.0, 1e-6, 0.03),  # nothing is seen of it
+        (0.5, 0.0, 1e-6, 2e-6),  # it would be seen, and is not
+        (0.5, 0.0, 1.0, 0.03),  # it would be, but for the noise
+        (0.5, 5.0, 1e-6, 0.03),  # what is left may be of it, of something else or of both
+        (0.5, 0.015, 1e-6, 0.03 / np.sqrt(2.0)),
+    ],
+)
+def test_ranges_are_as_wide_as_a_scale_may_be_off(seen, left, level, off) -> None:
+    found = standing(seen, left, level).average()
     assert found.shifts == pytest.approx(0.0)
-    assert np.sqrt(found.variances) == pytest.approx(0.8 * 0.03)
+    assert np.sqrt(found.variances) == pytest.approx(0.8 * off, rel=1e-3)
     assert found.widest == (LOG_SCALES,)
 
 
 def test_draws_are_off_by_as_much() -> None:
-    psi = np.eye(6)[:, :1]
-    rows = Rows(
-        residual=np.zeros(6),
-        psi=psi,
-        priors=np.zeros((1, 2)),
-        held=np.zeros((6, 0)),
-        deviations=np.zeros(0),
-        S=0.8 * psi,
-        level=1.0,
-        scales=np.array([0.03]),
-    )
-    moves = stand(rows, []).draw(4000, np.random.default_rng(1)).moves
+    moves = standing(0.0, 0.0, 1.0).draw(4000, np.random.default_rng(1)).moves
     assert np.std(moves) == pytest.approx(0.8 * 0.03, rel=0.05)
