@@ -194,8 +194,9 @@ def _held_astern(fit: Fit) -> list[str]:
         if model.value(ahead) > 0.0
     }
     return [
-        f"{n} is held at {times:.2g} times {ahead}, and screws have 0.6 to 1: no trial goes "
-        "astern, what she does there is not known: sail one that does, and free it"
+        f"no trial goes astern: {n} stays as it was begun, {times:.2g} times the {ahead} that was "
+        "found, where screws have 0.6 to 1; what she does astern is not known: sail one that goes, "
+        "and free it"
         for n, (ahead, times) in off.items()
         if not USUAL[0] < times < USUAL[1]
     ]

@@ -85,8 +85,8 @@ def astern_orders(ship: Vessel, engine: Engine) -> dict[str, float]:
         ship, engine.feedback, dict.fromkeys(back, 0.0)
     ):
         raise DesignError(
-            f"stop astern: {', '.join(back)} push nothing astern in this model; what they give "
-            "astern is zero or has the wrong sign: free it, with a trial that holds them astern"
+            f"stop astern: no push astern comes from {', '.join(back)} in this model: it is zero "
+            "or has the wrong sign; free it, with a trial that holds that astern"
         )
     return back
 

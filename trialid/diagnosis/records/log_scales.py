@@ -15,13 +15,13 @@ from trialid.identification.output_error import Problem, residual_of_trial, stre
 from trialid.names.quantities import OVER_GROUND, SIGNALS, SLOPES
 from trialid.simulation.integrate import Departure, record_for
 
-OFF: Final = 0.05 / 3.0
-"""Standard deviation of a log's scale: a third of the 5 % that a rate-of-turn indicator may be off
-by (IMO resolution A.526(13)). Rudder feedbacks are 1 to 2 deg off at 35 deg, which is as much. Of
-30 ships whose logs scatter by half of the limits ranges without it hold 80 % of the truths, with it
-94, with half of the limits 99 and wider by a half."""
+OFF: Final = 0.025
+"""Standard deviation of a log's scale: half of the 5 % that a rate-of-turn indicator may be off by
+(IMO resolution A.526(13)). Rudder feedbacks are 1 to 2 deg off at 35 deg, which is as much. Of 30
+ships whose logs scatter by that ranges hold 94 % of the truths with it, 92 with a third of the
+limits, and 80 without."""
 
-BETTER: Final = 0.02 / 3.0
+BETTER: Final = 0.01
 """The same of a speed log, by the 2 % of resolution A.824(19), and of a rate whose angle is logged
 too: those of sound gyros lie within 2 % of its slope."""
 

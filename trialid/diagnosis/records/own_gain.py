@@ -148,9 +148,9 @@ def _sentence(found: Sequence[OwnGain], begins: str) -> str:
     return (
         f"{best.factor.trial} reads otherwise than the others: {begins} its "
         f"{' or '.join(as_good)} the error falls from {best.before.eps_rmsn:.2%} to "
-        f"{best.fit.eps_rmsn:.2%}{out}; that log is off, or load, wind or current was another "
-        "there: where a second sensor agrees multiply its gain in the trial's [trial.signals] by "
-        "that, or leave the trial out"
+        f"{best.fit.eps_rmsn:.2%}{out}; that log is off, or load, depth, wind or current was "
+        "another there: where a second sensor agrees multiply its gain in the trial's "
+        "[trial.signals] by that, or leave the trial out"
     )
 
 

@@ -55,8 +55,8 @@ def _turn(trial: Trial) -> float:
 def _another_unit(fit: Fit, logged: Sequence[Trial]) -> str | None:
     """That she is as much faster in all trials than her file says as a unit is larger.
 
-    Not of a boat with drives of her own, whose orders make her speed: of the Otter at 1.84 m/s under
-    steps of both thrusters, with U0 of 1 m/s in her file, no weak one had a name.
+    Not of a boat with drives of her own, whose orders make her speed: of the Otter at 1.84 m/s
+    under steps of both thrusters, with U0 of 1 m/s in her file, no weak one had a name.
     """
     stated = fit.model.ship.particulars["U0"]
     speeds = [speed for t in logged if (speed := approach_speed(t)) is not None]

@@ -63,7 +63,10 @@ def no_signal(survey: Inspection, quantities: Sequence[str]) -> TooLittle:
 def no_speed_of_boat(survey: Inspection) -> TooLittle:
     """That a boat with two thrusters has no speed, and what may tell it."""
     there = positions(survey.channels.values())
-    coarse = "her positions are too coarse to tell it, or without a heading that she goes by; "
+    coarse = (
+        "her positions scatter too much to tell one before she has turned on, or no heading is "
+        "logged that she goes by; "
+    )
     beside = coarse if there else ""
     return TooLittle(
         survey,
@@ -105,10 +108,12 @@ def _what_then(survey: Inspection, called: bool) -> str:
         )
     drives = [] if called else drives_among(survey)
     if drives:
+        turned = any(survey.sources(one) for one in ("psi", "r"))
+        lacking = "" if turned else "; neither heading nor yaw rate is recognised, log one"
         return (
-            f"she seems to steer by thrusters ({', '.join(drives[:4])}): two are begun with, "
-            "called left and right or 1 and 2, beside heading or yaw rate; map others by hand, "
-            "see `trialid guide actuators`"
+            f"she seems to steer by thrusters ({', '.join(drives[:4])}){lacking}: two are begun "
+            "with, called left and right or 1 and 2, beside heading or yaw rate; map others by "
+            "hand, see `trialid guide actuators`"
         )
     pulses = [] if called else [one.name for one in survey.channels.values() if _is_driven(one)]
     if pulses:
