@@ -195,6 +195,20 @@ def test_the_band_is_said_with_what_it_held(result):
     assert "10 %" not in said  # how fitted trials keep to it says nothing
 
 
+def test_a_band_as_wide_as_with_no_model_is_no_success(result):
+    """An outsider's boat of 1.7 m/s had one of 4.9 m/s, of which 100 % lay inside."""
+    run = copy.deepcopy(result)
+    for trial in run["trials"]:
+        trial["inside"] = {"r": 1.0, "phi": 1.0} if trial["use"] == "check" else {}
+    moved = run["fit"]["y_rms"]
+    run["fit"]["band"] = {"r": 1.9 * moved["r"], "phi": 2.0 * moved["phi"]}
+    text = " ".join(lines(run))
+    assert "φ: as wide as with no model, for no fitted trial foretells another" in text
+    assert "lie inside" not in text
+    run["fit"]["band"] = {n: 1.9 * x for n, x in moved.items()}
+    assert "of the held-out samples 100 % lie inside" in " ".join(lines(run))
+
+
 def test_a_heading_that_may_be_any_has_no_band_of_three_turns(result):
     run = copy.deepcopy(result)
     for half, said in ((18.0, "ψ anywhere"), (0.02, "ψ +-1.15 deg")):

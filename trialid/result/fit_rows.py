@@ -96,6 +96,10 @@ class StartsPart:
     of: int
 
 
+NO_MODEL: Final = 1.96
+"""RMS values of a motion about its mean within which 95 % of it lies, whatever a model says."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class FitPart:
     """How the search ended; errors are shares of the measured RMS.
@@ -123,6 +127,12 @@ class FitPart:
     band: Mapping[str, float] = field(default_factory=dict)
     search: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+
+    @property
+    def foretells_nothing_of(self) -> tuple[str, ...]:
+        """Outputs whose band is as wide as that of no model: nearly twice what moved them."""
+        every = ((name, half, self.y_rms.get(name)) for name, half in self.band.items())
+        return tuple(name for name, half, moved in every if moved and half > NO_MODEL * moved)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -180,7 +180,11 @@ def _band(run: Result) -> "Iterable[RenderableType]":
     said = f"95 % band of a trial like these: {halves}"
     checks = [t for t in run.trials if t.use == "check"]
     shares = [x for t in checks for x in t.inside.values() if x is not None]
-    if shares:
+    blind = run.fit.foretells_nothing_of
+    if blind:
+        wide = " and ".join(map(labels.symbol, blind))
+        said += f"; {wide}: as wide as with no model, for no fitted trial foretells another"
+    elif shares:
         said += f"; of the held-out samples {_shares(shares)} lie inside"
     yield Words(plain(said), 2)
 

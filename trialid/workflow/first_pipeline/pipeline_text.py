@@ -64,6 +64,7 @@ def pipeline_text(
     lines = [
         head + f"name = {quote(path.stem)}",
         f"ship = {quote(_relative(ship_path, path))}",
+        "# imo = true  # the manoeuvres of MSC.137(76), with ranges: trialid guide design",
         *(f"# left out: {comment(words)}" for words in left_out),
     ]
     names, held = _names(trials), held_out(trials)
