@@ -61,7 +61,8 @@ def test_in_still_water_drift_is_read_out_of_it(seed):
         assert abs(right) < 0.4 * abs(twice)
 
 
-@pytest.mark.parametrize("seed", [41, pytest.param(42, marks=pytest.mark.study(turn="each"))])
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("seed", [41, 42])
 def test_a_current_has_its_name(seed):
     assert found(READ, seed, 0.8).verdict.effect == "current_in_speed_record"
 

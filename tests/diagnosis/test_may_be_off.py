@@ -15,6 +15,8 @@ def handed_over(monkeypatch, *, tried=(), prior=None, parameters=None, kind="phy
     """What a fit with one number held fixed hands to the averaging."""
     given = []
     monkeypatch.setattr(tested, "stand", lambda rows, rivals: given.append((rows, rivals)))
+    scale = (np.full((5, 1), 7.0), np.array([0.03]))
+    monkeypatch.setattr(tested, "log_scales", lambda fit: scale)
     parameters = parameters or {"Nrar": Parameter(-0.0015), "Nvar": Parameter(0.005)}
     names = tuple(parameters)
     places = tuple(range(len(names)))
@@ -49,6 +51,13 @@ def test_what_is_held_fixed_is_off_by_its_share(monkeypatch):
     rows, _ = handed_over(monkeypatch)
     assert rows.deviations == pytest.approx([0.0004])
     assert rows.level == 0.02
+
+
+def test_scales_of_logs_stand_last_with_how_uncertain_they_are(monkeypatch):
+    rows, _ = handed_over(monkeypatch)
+    assert rows.S[:, -1] == pytest.approx(7.0)
+    assert rows.S[:, :-1] == pytest.approx(1.0)
+    assert rows.scales == pytest.approx([0.03])
 
 
 def test_what_may_be_missing_is_of_twice_its_typical_size_either_way(monkeypatch):

@@ -52,7 +52,9 @@ def whole(fit):
     return CATALOGUE
 
 
-@pytest.fixture(scope="module", params=[31, pytest.param(32, marks=pytest.mark.study(turn="each"))])
+@pytest.fixture(
+    scope="module", params=[pytest.param(s, marks=pytest.mark.study(turn="each")) for s in (31, 32)]
+)
 def found(request):
     rng = np.random.default_rng(request.param)
     orders = {

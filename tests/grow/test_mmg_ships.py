@@ -45,6 +45,7 @@ def found(tmp_path_factory):
     return diagnose(fit, diagnose_settings(asked, catalogue))
 
 
+@pytest.mark.study(turn="each")
 def test_two_effects_do_what_none_does_alone(found):
     fit, both = found.before.fit, found.together
     assert (found.verdict.kind, found.verdict.effect) == ("cannot tell", None)

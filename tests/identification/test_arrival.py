@@ -192,6 +192,7 @@ def test_a_gm_that_the_record_tells_has_no_rivals():
         assert fit.rivals == ()
 
 
+@pytest.mark.study(turn="each")
 def test_ranges_reach_to_what_the_record_does_not_exclude():
     """Linear, 84 m: found at half of the true GM, where next to nothing speaks against it."""
     drawn = draw(7293)

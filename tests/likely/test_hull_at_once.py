@@ -21,6 +21,7 @@ def fit():
     return begun(sailed(drawn(SEED), SEED))
 
 
+@pytest.mark.study(turn="each")
 def test_it_stands_every_check_with_none_of_its_forces_at_an_end(fit):
     found = hull_at_once(fit, CATALOGUE)
     assert stands(fit, found)
@@ -39,6 +40,7 @@ def test_only_what_is_tried_is_in_it(fit):
     assert hull_at_once(fit, {}) is None
 
 
+@pytest.mark.study(turn="each")
 def test_a_ship_without_them_has_none():
     """Fitted to the noise without, all of them take no tenth of the squared error off."""
     none = dict.fromkeys((n for n in SHIP.coefficients if BEYOND.fullmatch(n)), 0.0)

@@ -138,6 +138,7 @@ def test_a_file_that_says_nothing_of_its_scatter_is_no_narrower_for_it():
     assert sum(every) >= 0.9 * len(every) > sum(alone)
 
 
+@pytest.mark.study(turn="each")
 def test_without_her_file_it_is_done_for_a_hull_that_is_nearly_linear():
     """Of one with terms of a usual hull already there is little for another to stand in for."""
     trials = sailed(drawn(27), 27)

@@ -76,6 +76,7 @@ def test_what_the_columns_hold(record):
     assert np.corrcoef(c["delta"], np.gradient(c["r"], c["t"]))[0, 1] < -0.7  # positive to port
 
 
+@pytest.mark.study(turn="each")
 def test_the_error_falls_with_nonlinear_yaw_damping(linear):
     """Ours: 22.4 % to 14.7, 14.6 and 13.7 %; held out 22.2 % to 14.7, 14.5 and 13.3 %."""
     before = run(linear).fit
@@ -124,6 +125,7 @@ def test_nonlinear_yaw_damping_is_named_and_holds_on_the_other_runs(linear):
     assert named.eps_rmsn_check < 0.9 * done.fit.eps_rmsn_check
 
 
+@pytest.mark.study(turn="each")
 def test_it_is_named_in_sway_and_yaw_together(linear):
     done = run_pipeline(with_candidates(linear, "all")).result
     print(done.verdict.sentence)
@@ -168,6 +170,7 @@ def test_the_loop_more_than_halves_the_held_out_error(done):
     assert after < 0.5 * before
 
 
+@pytest.mark.study(turn="each")
 def test_a_lag_is_not_named_where_a_force_takes_far_more_off(linear):
     """After the drag, a lag of the gyro is likeliest by whitened residuals: 13.86 to 13.82 %."""
     drag = with_candidates(with_effects(linear, ["cross_flow_drag"], ["C_D"]), "all")

@@ -86,10 +86,9 @@ def verdict_of(seed: int, *, kept: bool, dead: float = 0.0) -> Verdict:
     return diagnose(missions.mission_fit(boat, seed, kept=kept)).verdict
 
 
-@pytest.mark.parametrize("dead", [0.0, pytest.param(1.0, marks=pytest.mark.study(turn="each"))])
-@pytest.mark.parametrize(
-    "seed", [70, *(pytest.param(s, marks=pytest.mark.study(turn=1)) for s in SEEDS[1:])]
-)
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("dead", [0.0, 1.0])
+@pytest.mark.parametrize("seed", [70, *SEEDS[1:]])
 def test_no_dead_band_is_named_where_the_rudder_keeps_her_on_course(seed: int, dead: float) -> None:
     """Whether she has one or not: nothing else is named in its place, and a zig-zag would tell.
 
@@ -101,6 +100,7 @@ def test_no_dead_band_is_named_where_the_rudder_keeps_her_on_course(seed: int, d
     assert "while the rudder keeps her on her course" in found.sentence
 
 
+@pytest.mark.study(turn="each")
 def test_what_is_named_does_more_than_what_looks_like_the_rudder() -> None:
     """Two effects at once, too; else they stand in for what the rudder may have."""
     fit = missions.mission_fit(missions.Boat(dead=np.deg2rad(1.0)), 70, kept=True)

@@ -9,8 +9,8 @@ something that may be missing and beta its size, the parameters move by
 and what the record says of beta follows from its visible trace, S less what A reaches, with a wide
 prior of its typical size. Each thing that may be missing makes a model; they are averaged by how
 well they stand: Hoeting et al. (1999), Bayesian model averaging: a tutorial, Statistical Science
-14. Numbers that were held fixed are part of every model, each uncertain by what its source says,
-and so are the scales of the logs.
+14. Numbers that were held fixed are part of every model, each uncertain by what its source says;
+scales of the logs widen every model alike.
 
 All of that is linear and knows no ends, as a normal distribution does; a parameter has them. Its
 range ends where the search did: a GM of 0.012 m was likely from -0.012 m (`ranges`).
@@ -164,7 +164,7 @@ class Standing:
             columns[np.ix_(rows, np.array(one.places, dtype=int) - 1)] = drawn * one.sizes
         off = self.known.off_in_scale
         normal = rng.standard_normal((number, len(off)))
-        columns[:, columns.shape[1] - len(off) :] = off * normal
+        columns[:, columns.shape[1] - len(off) :] = normal @ off.T
         return Drawn(which - 1, -columns @ self.known.moves[:, 1:].T, columns)
 
     def _weights(self, costs: Sequence[float]) -> Vector:
@@ -185,7 +185,8 @@ class Drawn:
     moves
         What the fitted parameters are off by, in their units; (n, n_theta).
     columns
-        What was held fixed is off by, then the size of what is missing; (n, n_h + n_S).
+        What was held fixed is off by, then the size of what is missing, then what scales are off
+        by; (n, n_h + n_S).
     """
 
     rivals: NDArray[np.int64]

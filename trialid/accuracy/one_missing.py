@@ -49,21 +49,24 @@ class Reduced:
 
     @property
     def off_in_scale(self) -> Vector:
-        """How far each scale may be off, beforehand and by what is left; (n_s,).
+        """Columns that add up to how far scales may be off together; (n_s, n_s).
 
-        Its trace in the residual says how far it is, to the noise, were nothing else missing. What
-        is missing looks like a scale, too: what it says is believed to as much as it says.
+        What they leave to see says how far they are, to the noise, were nothing else missing. What
+        is missing looks like scales, too: all that is left along them counts as noise.
         """
         last = np.s_[len(self.gram) - len(self.scales) :]
-        squares = np.maximum(np.diag(self.gram)[last], 1e-30)
-        told = self.variance / squares + (self.gram[0, last] / squares) ** 2
-        return np.asarray(self.scales * np.sqrt(told / (told + self.scales**2)))
+        seen = self.gram[last, last] * np.outer(self.scales, self.scales)
+        moment = self.gram[last, 0] * self.scales
+        along = float(moment @ np.linalg.pinv(seen, hermitian=True) @ moment)
+        told = np.eye(len(self.scales)) + seen / (self.variance + along)
+        root = np.linalg.cholesky(np.linalg.inv(told))
+        return np.asarray(self.scales[:, None] * root)
 
     @property
     def by_scales(self) -> Vector:
-        """Moves by a deviation of each scale; (n, n_s)."""
+        """Moves by each of these columns; (n, n_s)."""
         first = self.moves.shape[1] - len(self.scales)
-        return np.asarray(self.moves[:, first:] * self.off_in_scale)
+        return np.asarray(self.moves[:, first:] @ self.off_in_scale)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -99,10 +99,10 @@ def propeller_astern(
 
 @effect(source="Fossen (1994), Guidance and Control of Ocean Vehicles: bilinear thrust, |n| u")
 def propeller_astern_advance(u, n, *, X_ast_u=Parameter(-5e-6, low=-1e-4, high=0.0)):
-    """X = X_ast_u u |n| where n < 0: a screw astern that still meets the water brakes the more.
+    """X = X_ast_u u |n| where n < 0: a screw astern brakes the more, the more way she has.
 
-    Where a crash stop is fitted without it the hull's resistance stands in, and ahead she then
-    seems to stop in half of the way.
+    Where a crash stop is fitted without it the hull's resistance stands in, and with the engine
+    stopped she then seems to lose her speed in half of the time.
     """
     return Force(X=-0.5 * X_ast_u * u * (n - abs(n)))
 

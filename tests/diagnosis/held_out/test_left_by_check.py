@@ -70,6 +70,7 @@ def test_what_acts_only_in_the_trial_held_out_is_seen_there():
     assert worst.left > 1.5 * worst.by_noise
 
 
+@pytest.mark.study(turn="each")
 def test_the_whole_diagnosis_says_so():
     """No effect stands out in the trials that it was fitted to."""
     found = diagnose(identify(sailed(7, (2, 5), (20,)), LACKING, FEWER)).verdict

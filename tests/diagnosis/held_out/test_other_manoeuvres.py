@@ -79,6 +79,7 @@ def test_a_name_with_which_the_fit_fails_as_before_mends_nothing(mended, found, 
     assert diagnose(mended).verdict.kind == "no fit"
 
 
+@pytest.mark.study(turn="each")
 def test_a_rudder_logged_the_wrong_way_stays_one_beside_a_hidden_effect():
     fit = sailed((10, 20), 5, of_file=4, linear=0.5, ahead=-1.0)
     assert "wrong" not in str(why_no_fit(fit))

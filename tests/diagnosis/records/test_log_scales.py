@@ -14,7 +14,8 @@ from trialid.diagnosis.records.log_scales import BETTER, OFF, log_scales, with_a
 from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.trust import accuracy_of
 from trialid.identification.fit import Fit, identify
-from trialid.identification.output_error import residual_at
+from trialid.identification.output_error import residual_at, stretches
+from trialid.trial_rows import Stretch
 
 TRUTH = s175q.MODEL.value("Ndelta")
 MODEL = replace(s175q.MODEL, ship=replace(s175q.MODEL.ship, uncertainty={"default": 0.0}))
@@ -63,12 +64,15 @@ def test_without_it_the_range_does_not(monkeypatch) -> None:
     assert not low < TRUTH < high
 
 
+def names_of(fit: Fit, part: Stretch) -> str:
+    return fit.problem.outputs[part.output]
+
+
 @pytest.mark.parametrize("signal", ["delta", "r", "phi"])
 def test_slopes_against_logs_that_are_scaled_both_ways(as_it_is: Fit, signal: str) -> None:
     """And none in the parameters: what is left of a residual at the same ones."""
     columns, off = log_scales(as_it_is)
-    names = with_a_scale(as_it_is.problem, 0)
-    place = names.index(signal)
+    place = with_a_scale(as_it_is.problem, 0).index(signal)
     ends = []
     for by in (0.999, 1.001):
         trials = tuple(
@@ -78,6 +82,10 @@ def test_slopes_against_logs_that_are_scaled_both_ways(as_it_is: Fit, signal: st
         problem = replace(as_it_is.problem, trials=trials)
         ends.append(residual_at(problem, as_it_is.theta))
     both = (ends[1] - ends[0]) / 0.002
+    if signal in as_it_is.problem.outputs:  # by what the model says: its noise is none of its scale
+        mine = [p.rows for p in stretches(as_it_is.problem) if names_of(as_it_is, p) == signal]
+        for rows in mine:
+            both[rows] -= as_it_is.residual[rows]
     assert columns[:, place] == pytest.approx(both, rel=1e-2, abs=1e-2 * np.abs(both).max())
     assert off[place] == OFF  # no heading is logged beside the rate
 
@@ -126,6 +134,31 @@ def test_ranges_are_as_wide_as_a_scale_may_be_off(seen, left, level, off) -> Non
     assert found.shifts == pytest.approx(0.0)
     assert np.sqrt(found.variances) == pytest.approx(0.8 * off, rel=1e-3)
     assert found.widest == (LOG_SCALES,)
+
+
+def two(seen: float, level: float) -> Standing:
+    """Two scales of which one makes up for the other, as of both thrusters; and so much to see."""
+    psi, other = np.eye(6)[:, :1], np.eye(6)[:, 1]
+    rows = Rows(
+        residual=np.zeros(6),
+        psi=psi,
+        priors=np.zeros((1, 2)),
+        held=np.zeros((6, 0)),
+        deviations=np.zeros(0),
+        S=np.column_stack([psi[:, 0] + seen * other, psi[:, 0] - seen * other]),
+        level=level,
+        scales=np.array([0.025, 0.025]),
+    )
+    return stand(rows, [])
+
+
+def test_what_each_alone_would_show_both_together_hide() -> None:
+    """Of e1 + e2 and e1 - e2 the sum is not seen: the parameter may be off by both."""
+    seen, unseen = (two(x, 1e-6).average().variances[0, 0] for x in (1.0, 0.0))
+    assert np.sqrt(unseen) == pytest.approx(0.025 * np.sqrt(2.0))
+    assert np.sqrt(seen) == pytest.approx(0.025 * np.sqrt(2.0), rel=1e-3)
+    moves = two(1.0, 1e-6).draw(4000, np.random.default_rng(2)).moves
+    assert np.std(moves) == pytest.approx(np.sqrt(seen), rel=0.05)
 
 
 def test_draws_are_off_by_as_much() -> None:

@@ -46,7 +46,8 @@ def found(truth, seed, candidates=CATALOGUE):
     return diagnosis
 
 
-@pytest.mark.parametrize("seed", [61, pytest.param(62, marks=pytest.mark.study(turn="each"))])
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("seed", [61, 62])
 def test_it_is_named_where_the_shaft_changes(seed):
     """Ours: 34.5 and 36.0 to 6.3 and 6.5 %."""
     done = found(IN_THE_RACE, seed)

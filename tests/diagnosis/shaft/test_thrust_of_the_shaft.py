@@ -46,7 +46,8 @@ def found(truth: ShipModel, seed: int) -> Diagnosis:
     return done
 
 
-@pytest.mark.parametrize("seed", [71, pytest.param(72, marks=pytest.mark.study(turn="each"))])
+@pytest.mark.study(turn="each")
+@pytest.mark.parametrize("seed", [71, 72])
 def test_it_is_named_where_orders_change_the_shaft(seed: int) -> None:
     done = found(MODEL, seed)
     assert done.verdict.family[0] == "shaft_thrust"
