@@ -160,7 +160,7 @@ def test_a_gain_of_its_own_is_told_by_its_own_drive_alone() -> None:
 @pytest.mark.parametrize(("times", "told"), [(9.0, True), (0.8, False), (0.2, True), (1.5, False)])
 def test_a_gain_astern_that_no_screw_has_is_told(times: float, told: bool) -> None:
     said = [line.partition(" the k_ahead")[0] for line in _held_astern(a_fit(times))]
-    begun = f"no trial goes astern: k_astern stays as it was begun, {times:.2g} times"
+    begun = f"no trial goes astern: k_astern stays as it is stated, {times:.2g} times"
     assert said == [begun] * told
 
 

@@ -203,10 +203,13 @@ def test_a_band_as_wide_as_with_no_model_is_no_success(result):
     moved = run["fit"]["y_rms"]
     run["fit"]["band"] = {"r": 1.9 * moved["r"], "phi": 2.0 * moved["phi"]}
     text = " ".join(lines(run))
-    assert "φ: as wide as with no model, for no fitted trial foretells another" in text
-    assert "lie inside" not in text
+    assert "φ: as wide as with no model, too few trials tell it, or too unlike; of the held" in text
+    run["fit"]["band"] = {n: 2.0 * x for n, x in moved.items()}
+    assert "lie inside" not in " ".join(lines(run))
     run["fit"]["band"] = {n: 1.9 * x for n, x in moved.items()}
-    assert "of the held-out samples 100 % lie inside" in " ".join(lines(run))
+    text = " ".join(lines(run))
+    assert "of the held-out samples 100 % lie inside" in text
+    assert "no model" not in text
 
 
 def test_a_heading_that_may_be_any_has_no_band_of_three_turns(result):

@@ -170,5 +170,5 @@ def test_a_choice_that_hangs_on_single_trials_is_not_said_as_if_it_were_sure(wit
     )
     first = sentences(found)[0]
     assert first.endswith("none that is simpler is as good.") == sure
-    told = "; but without one of its trials 4 of 5 choices are modulus: not sure."
+    told = "; but that is not sure: with one trial left out, 4 of 5 are modulus."
     assert first.endswith(told) != sure

@@ -14,7 +14,7 @@ USUAL_FORCES: Final = "the usual forces at once"
 """What widens a range where all forces that a hull usually has move it further than any alone."""
 
 LOG_SCALES: Final = "scales of the logs"
-"""What widens a range where a log that reads by another factor moves it further than all else."""
+"""What widens a range where logs that read by other factors move it further than any effect."""
 
 IN_TIME: Final = "sensors that are not early"
 """What widens a range where a sensor is taken to be early, which none is."""

@@ -194,9 +194,9 @@ def _held_astern(fit: Fit) -> list[str]:
         if model.value(ahead) > 0.0
     }
     return [
-        f"no trial goes astern: {n} stays as it was begun, {times:.2g} times the {ahead} that was "
-        "found, where screws have 0.6 to 1; what she does astern is not known: sail one that goes, "
-        "and free it"
+        f"no trial goes astern: {n} stays as it is stated, {times:.2g} times the {ahead} that was "
+        "found, where screws have 0.6 to 1; what she does astern is not known: sail one that goes "
+        "astern, and free it"
         for n, (ahead, times) in off.items()
         if not USUAL[0] < times < USUAL[1]
     ]

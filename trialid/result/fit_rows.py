@@ -7,6 +7,7 @@ from typing import Final, Literal
 
 from trialid.accuracy.likely import student
 from trialid.accuracy.ranges import share_off
+from trialid.names.quantities import POSITION
 
 Interval = tuple[float, float]
 
@@ -97,7 +98,7 @@ class StartsPart:
 
 
 NO_MODEL: Final = 1.96
-"""RMS values of a motion about its mean within which 95 % of it lies, whatever a model says."""
+"""RMS values of a motion within which 95 % of it lies, whatever a model says."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,9 +130,12 @@ class FitPart:
     remarks: tuple[str, ...] = ()
 
     @property
-    def foretells_nothing_of(self) -> tuple[str, ...]:
-        """Outputs whose band is as wide as that of no model: nearly twice what moved them."""
-        every = ((name, half, self.y_rms.get(name)) for name, half in self.band.items())
+    def untold_band(self) -> tuple[str, ...]:
+        """Outputs whose band is as wide as with no model: nearly twice what moved them.
+
+        But for positions, whose norm is her length.
+        """
+        every = ((n, half, self.y_rms.get(n)) for n, half in self.band.items() if n not in POSITION)
         return tuple(name for name, half, moved in every if moved and half > NO_MODEL * moved)
 
 

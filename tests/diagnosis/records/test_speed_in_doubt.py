@@ -10,6 +10,7 @@ from trialid.diagnosis.records.in_doubt import in_doubt, settle
 from trialid.diagnosis.records.speed_in_doubt import speed_in_doubt
 from trialid.diagnosis.verdict import Verdict
 from trialid.identification.fit import Fit, identify
+from trialid.ship.actuators import Actuator
 
 NAMED = Verdict("missing", "rudder_stall", ("rudder_stall",), "rudder_stall is missing")
 ANGLES = (5, 10, 20)
@@ -62,6 +63,16 @@ def test_one_that_stands_where_she_turns_least_may_be_alive(fit):
 
 def test_a_speed_that_is_the_same_in_all_trials_is_as_it_was_simulated(fit):
     assert speed_in_doubt(speeds(fit, lambda n, r: np.full(len(r), U0))) is None
+
+
+@pytest.mark.parametrize(("kind", "told"), [("thruster", False), ("rudder", True)])
+def test_a_boat_with_drives_sails_as_they_are_told(fit, kind, told) -> None:
+    """Her U0 is no speed of hers; a ship of two rudders has one."""
+    one = Actuator(name="left", kind=kind, x=0.0, y=0.4)
+    ship = replace(fit.model.ship, actuators=(one,))
+    driven = replace(fit, model=replace(fit.model, ship=ship))
+    doubt = speed_in_doubt(speeds(driven, lambda n, r: 1.944 * falling(n, r)))
+    assert (doubt is not None) == told
 
 
 @pytest.mark.parametrize(

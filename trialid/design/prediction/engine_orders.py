@@ -1,7 +1,7 @@
 """What drives a ship on her approach, stopped and astern: the orders of her shafts and thrusters.
 
-A shaft `n` that turns astern pulls by `propeller_thrust` and what `propeller_astern` says of it; an
-`[[actuator]]` has a gain of its own astern.
+A shaft `n` that turns astern pulls by `propeller_thrust` and what `propeller_astern` and
+`propeller_astern_advance` say of it; an `[[actuator]]` has a gain of its own astern.
 """
 
 from collections.abc import Callable, Mapping
@@ -85,8 +85,8 @@ def astern_orders(ship: Vessel, engine: Engine) -> dict[str, float]:
         ship, engine.feedback, dict.fromkeys(back, 0.0)
     ):
         raise DesignError(
-            f"stop astern: no push astern comes from {', '.join(back)} in this model: it is zero "
-            "or has the wrong sign; free it, with a trial that holds that astern"
+            f"stop astern: no push astern comes from {', '.join(back)} in this model, it is zero "
+            "or has the wrong sign: free its gain astern, with a trial that holds it astern"
         )
     return back
 

@@ -15,7 +15,7 @@ from trialid.design.prediction.embrace import embrace
 from trialid.design.prediction.likely_spread import Range
 from trialid.design.prediction.ranged_motion import PredictedMotion
 from trialid.effects.actuators.astern_gains import USUAL
-from trialid.effects.propulsion import propeller_astern
+from trialid.effects.propulsion import propeller_astern, propeller_astern_advance
 from trialid.ship.model import ShipModel
 
 LESS: Final = (0.2, 0.0, 0.4)
@@ -45,7 +45,8 @@ def screws_astern(ship: Vessel) -> tuple[Vessel, ...]:
     """The ship with each propeller that hers may be astern; none where a trial has told it."""
     model = ship.model
     needed = {"KT0", "D_P"} <= {*model.parameters}
-    if not needed or propeller_astern.name in {e.name for e in model.effects}:
+    told = {propeller_astern.name, propeller_astern_advance.name}
+    if not needed or told & {e.name for e in model.effects}:
         return ()
     known = model + propeller_astern
     models = [known.with_values(_less(model, less)) for less in LESS]

@@ -56,11 +56,12 @@ def _another_unit(fit: Fit, logged: Sequence[Trial]) -> str | None:
     """That she is as much faster in all trials than her file says as a unit is larger.
 
     Not of a boat with drives of her own, whose orders make her speed: of the Otter at 1.84 m/s
-    under steps of both thrusters, with U0 of 1 m/s in her file, no weak one had a name.
+    under steps of both thrusters, with U0 of 1 m/s in her file, a weak one was not named.
     """
     stated = fit.model.ship.particulars["U0"]
     speeds = [speed for t in logged if (speed := approach_speed(t)) is not None]
-    if not speeds or stated <= 0.0 or fit.model.ship.actuators:
+    driven = any(a.kind != "rudder" for a in fit.model.ship.actuators)
+    if not speeds or stated <= 0.0 or driven:
         return None
     times = np.array(speeds) / stated
     units = [

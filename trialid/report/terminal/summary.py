@@ -178,14 +178,14 @@ def _band(run: Result) -> "Iterable[RenderableType]":
         return
     halves = ", ".join(_half(name, x) for name, x in run.fit.band.items())
     said = f"95 % band of a trial like these: {halves}"
+    untold = run.fit.untold_band
     checks = [t for t in run.trials if t.use == "check"]
-    shares = [x for t in checks for x in t.inside.values() if x is not None]
-    blind = run.fit.foretells_nothing_of
-    if blind:
-        wide = " and ".join(map(labels.symbol, blind))
-        said += f"; {wide}: as wide as with no model, for no fitted trial foretells another"
-    elif shares:
-        said += f"; of the held-out samples {_shares(shares)} lie inside"
+    held = [x for t in checks for n, x in t.inside.items() if x is not None and n not in untold]
+    if untold:
+        wide = " and ".join(map(labels.symbol, untold))
+        said += f"; {wide}: as wide as with no model, too few trials tell it, or too unlike"
+    if held:
+        said += f"; of the held-out samples {_shares(held)} lie inside"
     yield Words(plain(said), 2)
 
 

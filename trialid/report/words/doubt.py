@@ -23,7 +23,7 @@ WIDENED: Final = {
     ANOTHER_GM: "as the record does not tell GM",
     USUAL_FORCES: "as all forces that a hull usually has, each small, may be there at once",
     IN_TIME: "as no sensor is early",
-    LOG_SCALES: "as a log may read a few percent too much or too little in all trials alike",
+    LOG_SCALES: "as logs may read a little too much or too little in all trials alike",
 }
 """Why a range is wide, but for an effect that may be missing."""
 

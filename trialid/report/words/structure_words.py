@@ -39,7 +39,7 @@ def _not_sure(found: Structures) -> str:
     [(name, times)] = Counter(again.values()).most_common(1) or [(None, 0)]
     if name in (None, found.chosen) or 2 * times <= len(again):
         return ""
-    return f"; but without one of its trials {times} of {len(again)} choices are {name}: not sure"
+    return f"; but that is not sure: with one trial left out, {times} of {len(again)} are {name}"
 
 
 def _unforetold(found: Structures) -> Iterator[str]:

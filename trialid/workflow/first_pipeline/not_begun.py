@@ -64,8 +64,8 @@ def no_speed_of_boat(survey: Inspection) -> TooLittle:
     """That a boat with two thrusters has no speed, and what may tell it."""
     there = positions(survey.channels.values())
     coarse = (
-        "her positions scatter too much to tell one before she has turned on, or no heading is "
-        "logged that she goes by; "
+        "her positions scatter too much to tell one in the time in which she turns, or no heading "
+        "is logged along which she goes; "
     )
     beside = coarse if there else ""
     return TooLittle(
@@ -109,10 +109,10 @@ def _what_then(survey: Inspection, called: bool) -> str:
     drives = [] if called else drives_among(survey)
     if drives:
         turned = any(survey.sources(one) for one in ("psi", "r"))
-        lacking = "" if turned else "; neither heading nor yaw rate is recognised, log one"
+        lacking = "" if turned else ", of which neither is recognised: log one, or map it"
         return (
-            f"she seems to steer by thrusters ({', '.join(drives[:4])}){lacking}: two are begun "
-            "with, called left and right or 1 and 2, beside heading or yaw rate; map others by "
+            f"she seems to steer by thrusters ({', '.join(drives[:4])}): two are begun with, "
+            f"called left and right or 1 and 2, beside heading or yaw rate{lacking}; map others by "
             "hand, see `trialid guide actuators`"
         )
     pulses = [] if called else [one.name for one in survey.channels.values() if _is_driven(one)]

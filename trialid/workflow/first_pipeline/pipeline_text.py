@@ -40,6 +40,8 @@ SWAY: Final = ("Yv", "Ydelta")
 ROLL: Final = ("Kv", "Kr", "Kdelta", "Kp", "GM")
 """All of the roll: a rudder's heeling moment held at another ship's would drag GM along."""
 
+IMO: Final = "# imo = true  # manoeuvres of MSC.137(76), with ranges: `trialid guide design`"
+"""For who wants them: of a ship that a rudder steers."""
 GEAR: Final = 0.05
 """Lag of a small ship's gear, as a share of the time in which she goes her own length: that of a
 ship of 160 m at 15 knots is 1 s."""
@@ -64,7 +66,7 @@ def pipeline_text(
     lines = [
         head + f"name = {quote(path.stem)}",
         f"ship = {quote(_relative(ship_path, path))}",
-        "# imo = true  # the manoeuvres of MSC.137(76), with ranges: trialid guide design",
+        *([IMO] if all({"delta", "delta_order"} & {*t.quantities} for t in trials) else []),
         *(f"# left out: {comment(words)}" for words in left_out),
     ]
     names, held = _names(trials), held_out(trials)
