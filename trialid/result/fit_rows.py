@@ -131,10 +131,7 @@ class FitPart:
 
     @property
     def untold_band(self) -> tuple[str, ...]:
-        """Outputs whose band is as wide as with no model: nearly twice what moved them.
-
-        But for positions, whose norm is her length.
-        """
+        """Outputs, but for positions, whose band is as wide as with no model: twice their RMS."""
         every = ((n, half, self.y_rms.get(n)) for n, half in self.band.items() if n not in POSITION)
         return tuple(name for name, half, moved in every if moved and half > NO_MODEL * moved)
 

@@ -15,6 +15,8 @@ from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.trust import accuracy_of
 from trialid.identification.fit import Fit, identify
 from trialid.identification.output_error import residual_at, stretches
+from trialid.report.words.doubt import widest
+from trialid.result.fit_rows import ParameterRow
 from trialid.trial_rows import Stretch
 
 TRUTH = s175q.MODEL.value("Ndelta")
@@ -164,3 +166,9 @@ def test_what_each_alone_would_show_both_together_hide() -> None:
 def test_draws_are_off_by_as_much() -> None:
     moves = standing(0.0, 0.0, 1.0).draw(4000, np.random.default_rng(1)).moves
     assert np.std(moves) == pytest.approx(0.8 * 0.03, rel=0.05)
+
+
+def test_the_report_says_what_widens_a_range_so() -> None:
+    row = ParameterRow(name="Nr", value=-2.0, likely=(-3.0, -1.5), widened_by=LOG_SCALES)
+    told = "as logs may read a little too much or too little in all trials alike."
+    assert widest([row]) == f"Least known: Nr, {told}"
