@@ -39,8 +39,8 @@ def log_scales(fit: Fit) -> tuple[Vector, Vector]:
     problem = fit.problem
     places = range(len(problem.trials))
     ordered = {a.name for a in problem.simulator.model.ship.actuators if a.command == "share"}
-    names = dict.fromkeys(n for i in places for n in with_a_scale(problem, i))
-    names = [n for n in names if n not in ordered and not n.endswith("_order")]
+    read = dict.fromkeys(n for i in places for n in with_a_scale(problem, i))
+    names = [n for n in read if n not in ordered and not n.endswith("_order")]
     columns = np.zeros((len(fit.residual), len(names)))
     for column, name in zip(columns.T, names, strict=True):
         for place in places:
