@@ -75,7 +75,7 @@ def _missing(runs: Sequence[RunRow]) -> Table:
 def _changes(changes: Sequence[ChangeRow]) -> Table:
     headings = (
         *("ship", "parameter", "what", "from voyage", "date", "between, 95 %", "size", "unit"),
-        *("of the level [%]", "p over the fleet", "exceeds likely ranges"),
+        *("grows by [%]", "p over the fleet", "exceeds likely ranges"),
     )
     return Table("changes", "Changes", headings, tuple(map(_change, changes)))
 
