@@ -126,6 +126,7 @@ def test_surge_damping_comes_back_in_its_linear_and_its_quadratic_part(first: in
     assert held >= 23, f"{held} of 28"
 
 
+@pytest.mark.study(turn="each")
 def test_a_thruster_that_is_dead_is_weak_by_all_of_it() -> None:
     """At the end of its range a fault has no slope, and is no gain for that."""
     assert verdict(1002, "dead").effect == "left_weak"

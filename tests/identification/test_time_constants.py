@@ -56,6 +56,7 @@ def test_a_lag_of_a_sensor_has_no_such_bound():
     assert lows(trials, "lag_r", ("T_r",)) == [0.0]
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     "seed", [13, *(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in (12, 16))]
 )

@@ -60,6 +60,7 @@ def predict_rate(model: FinishedModel) -> float:
     return sailed_ship(model.fit).rudder_rate
 
 
+@pytest.mark.study(turn="each")
 def test_a_number_that_is_stated_is_not_uncertain_and_its_place_is_told(
     model: FinishedModel,
 ) -> None:

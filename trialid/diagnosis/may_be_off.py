@@ -11,7 +11,7 @@ import numpy as np
 from trialid.accuracy.likely import WIDE, Averaged, Rows, Standing, stand
 from trialid.accuracy.one_missing import Rival
 from trialid.arrays import Vector
-from trialid.diagnosis.records.log_scales import log_scales
+from trialid.identification.check.log_scales import log_scales
 from trialid.diagnosis.restated import restates
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows

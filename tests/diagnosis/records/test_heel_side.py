@@ -39,6 +39,7 @@ def wrong():
     return identify(sailed(-1.0), PLAIN, SETTINGS)
 
 
+@pytest.mark.study(turn="each")
 def test_the_side_comes_first_and_nothing_is_named(wrong):
     found = diagnose(wrong)
     assert found.verdict.effect is None

@@ -10,7 +10,7 @@ from trialid.accuracy.likely import Rows, Standing, stand
 from trialid.accuracy.ranges import LOG_SCALES
 from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.noise.split import split
-from trialid.diagnosis.records.log_scales import BETTER, OFF, log_scales, with_a_scale
+from trialid.identification.check.log_scales import BETTER, OFF, log_scales, with_a_scale
 from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.trust import accuracy_of
 from trialid.identification.fit import Fit, identify
@@ -60,8 +60,8 @@ def test_the_range_of_what_it_moves_holds_the_truth(signal, by) -> None:
 
 
 def test_without_it_the_range_does_not(monkeypatch) -> None:
-    monkeypatch.setattr("trialid.diagnosis.records.log_scales.OFF", 0.0)
-    monkeypatch.setattr("trialid.diagnosis.records.log_scales.BETTER", 0.0)
+    monkeypatch.setattr("trialid.identification.check.log_scales.OFF", 0.0)
+    monkeypatch.setattr("trialid.identification.check.log_scales.BETTER", 0.0)
     low, high = ranges(fitted("delta", 1.03))["Ndelta"]
     assert not low < TRUTH < high
 

@@ -58,6 +58,7 @@ def said_of(before: Fit, found: Refit) -> Verdict:
     return decide(before, [found.candidate], [found], split, None, 0.05)
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     ("size", "beside"),
     [

@@ -37,6 +37,7 @@ def told(folder: Path, unit: str, scale: float, ending: str = "") -> str:
     return done.stdout + done.stderr
 
 
+@pytest.mark.study(turn="each")
 def test_orders_of_thrusters_are_read_in_their_units(finished: Path, monkeypatch) -> None:
     monkeypatch.chdir(finished.parent)
     run = trialid.run(finished)

@@ -15,6 +15,7 @@ from trialid.workflow.build_model import available, build_model, settings_of
 from trialid.workflow.read_trials import align_trials
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("own", [True, pytest.param(False, marks=pytest.mark.study(turn="each"))])
 def test_a_thruster_of_its_own_free_gain_is_not_weak(tmp_path: Path, own: bool) -> None:
     """With a gain in common it is: from it no free parameter could take a half of one thruster."""

@@ -61,6 +61,7 @@ def test_what_changed_since_is_not_taken(copied: Path, asked: Pipeline) -> None:
     assert kept_run(copied, load(asked.path)) is None
 
 
+@pytest.mark.study(turn="each")
 def test_an_effect_is_added_without_reading_and_with_the_same_result(
     copied: Path, asked: Pipeline, monkeypatch: pytest.MonkeyPatch
 ) -> None:

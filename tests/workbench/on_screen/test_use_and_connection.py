@@ -126,6 +126,7 @@ def test_a_refused_name_is_no_banner_of_another_tab(screen: Screen) -> None:
     assert told.is_visible()
 
 
+@pytest.mark.study(turn="each")
 def test_a_server_that_stopped_or_was_started_anew_is_told(desk: Desk, tmp_path: Path) -> None:
     """The old page lives again as soon as the new address is open in the same browser."""
     first, second = TOKENS

@@ -60,6 +60,7 @@ def words_of(desk: Desk) -> list[str]:
     return [row.words for row in (*found.earlier, *found.rows) if row.kind != "proposed"]
 
 
+@pytest.mark.study(turn="each")
 def test_every_step_at_a_desk_has_the_name_of_its_edit(path: Path) -> None:
     with opened(path) as desk:
         diagnosed(desk)

@@ -15,7 +15,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.design.imo.measure_slopes import Shows
 from trialid.design.imo.speed_loss import logged_loss, speed_loss
-from trialid.design.prediction.likely_spread import LikelySpread
+from trialid.design.prediction.likely_spread import LikelySpread, under_own_logs
 from trialid.design.standard import AT_SEA
 from trialid.effects.environment import steady_wind
 from trialid.effects.track import current
@@ -81,6 +81,7 @@ class Sailing:
 
 def sail_trial(fit: Fit, trial: Trial, spread: LikelySpread) -> SailedTrial | None:
     """The trial as the fitted ship sails it; None where she cannot, or leaves her model."""
+    spread = under_own_logs(fit, spread)
     try:
         values, start = of_trial(fit, trial)
         known = own_start_error(fit, trial) if trial.use == "check" else None

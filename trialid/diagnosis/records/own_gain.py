@@ -14,7 +14,7 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.diagnosis.records.further import is_no_further, stands_out
 from trialid.diagnosis.records.left_without import OTHERS
-from trialid.diagnosis.records.log_scales import rows_of, slope_of_scale, with_a_scale
+from trialid.identification.check.log_scales import rows_of, slope_of_scale, with_a_scale
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.errors import TrialidError
 from trialid.identification.adequacy import why_no_fit

@@ -34,20 +34,24 @@ def log_scales(fit: Fit) -> tuple[Vector, Vector]:
     """Normed rows per unit of the scale of each log, and how uncertain it is; (M, n), (n,).
 
     Of an output by what the model says, for its noise is none of its scale. Of orders nothing: they
-    are what was asked for.
+    are what was asked for. In the order of `scaled_logs`.
     """
-    problem = fit.problem
-    places = range(len(problem.trials))
-    ordered = {a.name for a in problem.simulator.model.ship.actuators if a.command == "share"}
-    read = dict.fromkeys(n for i in places for n in with_a_scale(problem, i))
-    names = [n for n in read if n not in ordered and not n.endswith("_order")]
+    problem, names = fit.problem, scaled_logs(fit.problem)
     columns = np.zeros((len(fit.residual), len(names)))
     for column, name in zip(columns.T, names, strict=True):
-        for place in places:
+        for place in range(len(problem.trials)):
             column[rows_of(problem, place)] = slope_of_scale(fit, place, name)
         for part in (p for p in stretches(problem) if problem.outputs[p.output] == name):
             column[part.rows] -= fit.residual[part.rows]
     return columns, np.array([BETTER if _is_better_known(problem, n) else OFF for n in names])
+
+
+def scaled_logs(problem: Problem) -> list[str]:
+    """Logs of any fitted trial whose scale may be off, but for orders."""
+    places = range(len(problem.trials))
+    ordered = {a.name for a in problem.simulator.model.ship.actuators if a.command == "share"}
+    read = dict.fromkeys(n for i in places for n in with_a_scale(problem, i))
+    return [n for n in read if n not in ordered and not n.endswith("_order")]
 
 
 def _is_better_known(problem: Problem, name: str) -> bool:
