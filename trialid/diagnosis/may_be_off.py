@@ -11,10 +11,10 @@ import numpy as np
 from trialid.accuracy.likely import WIDE, Averaged, Rows, Standing, stand
 from trialid.accuracy.one_missing import Rival
 from trialid.arrays import Vector
-from trialid.identification.check.log_scales import log_scales
 from trialid.diagnosis.restated import restates
 from trialid.diagnosis.search.augment import Augmented, Trace
 from trialid.diagnosis.search.carry_over import prior_rows
+from trialid.identification.check.log_scales import log_scales
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Parameter
 from trialid.ship.estimate.roll_moments import MOMENTS

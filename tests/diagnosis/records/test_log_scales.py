@@ -10,9 +10,9 @@ from trialid.accuracy.likely import Rows, Standing, stand
 from trialid.accuracy.ranges import LOG_SCALES
 from trialid.diagnosis.may_be_off import may_be_off
 from trialid.diagnosis.noise.split import split
-from trialid.identification.check.log_scales import BETTER, OFF, log_scales, with_a_scale
 from trialid.diagnosis.search.augment import augment
 from trialid.diagnosis.trust import accuracy_of
+from trialid.identification.check.log_scales import BETTER, OFF, log_scales, with_a_scale
 from trialid.identification.fit import Fit, identify
 from trialid.identification.output_error import residual_at, stretches
 from trialid.report.words.doubt import widest

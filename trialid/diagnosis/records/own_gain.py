@@ -14,10 +14,10 @@ import numpy as np
 from trialid.arrays import Vector
 from trialid.diagnosis.records.further import is_no_further, stands_out
 from trialid.diagnosis.records.left_without import OTHERS
-from trialid.identification.check.log_scales import rows_of, slope_of_scale, with_a_scale
 from trialid.diagnosis.search.carry_over import prior_rows
 from trialid.errors import TrialidError
 from trialid.identification.adequacy import why_no_fit
+from trialid.identification.check.log_scales import rows_of, slope_of_scale, with_a_scale
 from trialid.identification.fit import Fit, identify
 from trialid.trial import Trial
 
