@@ -193,7 +193,6 @@ MAY_BE_UNKNOWN = {
 """Some keys of either kind: what a row is about, and what a run may not find out."""
 
 
-@pytest.mark.study(turn="each")
 def test_any_key_may_be_null(result, series):
     """Any but what the schema wants: no knowledge is told as None, no wrong key is passed over."""
     refused = set()

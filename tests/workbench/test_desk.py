@@ -52,7 +52,6 @@ def told(path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Shown]:
 # --- what is shown ------------------------------------------------------------------------------
 
 
-@pytest.mark.study(turn="each")
 def test_what_is_known_is_shown_at_once(path: Path, told: list[Shown]) -> None:
     text = path.read_bytes()
     with opened(path) as desk:
