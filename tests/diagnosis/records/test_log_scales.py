@@ -105,18 +105,21 @@ def test_a_speed_log_and_a_rate_beside_its_heading_are_better_known() -> None:
     assert dict(zip(names, off, strict=True)) == {"delta": OFF, "n": OFF, "u": BETTER, "r": BETTER}
 
 
-def standing(seen: float, left: float, level: float) -> Standing:
-    """Of a parameter that takes 0.8 of a scale's trace up and leaves so much of it to see."""
-    psi, other = np.eye(6)[:, :1], np.eye(6)[:, 1]
+TAKEN_UP, SEEN = np.eye(6)[:2]
+"""What the parameter reaches, and what it does not."""
+
+
+def standing(*scales, left: float, level: float) -> Standing:
+    """Of a parameter beside scales of these traces, each uncertain by 0.03."""
     rows = Rows(
-        residual=left * other,
-        psi=psi,
+        residual=left * SEEN,
+        psi=TAKEN_UP[:, None],
         priors=np.zeros((1, 2)),
         held=np.zeros((6, 0)),
         deviations=np.zeros(0),
-        S=(0.8 * psi[:, 0] + seen * other)[:, None],
+        S=np.column_stack(scales),
         level=level,
-        scales=np.array([0.03]),
+        scales=np.full(len(scales), 0.03),
     )
     return stand(rows, [])
 
@@ -132,40 +135,21 @@ def standing(seen: float, left: float, level: float) -> Standing:
     ],
 )
 def test_ranges_are_as_wide_as_a_scale_may_be_off(seen, left, level, off) -> None:
-    found = standing(seen, left, level).average()
+    found = standing(0.8 * TAKEN_UP + seen * SEEN, left=left, level=level).average()
     assert found.shifts == pytest.approx(0.0)
     assert np.sqrt(found.variances) == pytest.approx(0.8 * off, rel=1e-3)
     assert found.widest == (LOG_SCALES,)
 
 
-def two(seen: float, level: float) -> Standing:
-    """Two scales of which one makes up for the other, as of both thrusters; and so much to see."""
-    psi, other = np.eye(6)[:, :1], np.eye(6)[:, 1]
-    rows = Rows(
-        residual=np.zeros(6),
-        psi=psi,
-        priors=np.zeros((1, 2)),
-        held=np.zeros((6, 0)),
-        deviations=np.zeros(0),
-        S=np.column_stack([psi[:, 0] + seen * other, psi[:, 0] - seen * other]),
-        level=level,
-        scales=np.array([0.025, 0.025]),
-    )
-    return stand(rows, [])
-
-
-def test_what_each_alone_would_show_both_together_hide() -> None:
-    """Of e1 + e2 and e1 - e2 the sum is not seen: the parameter may be off by both."""
-    seen, unseen = (two(x, 1e-6).average().variances[0, 0] for x in (1.0, 0.0))
-    assert np.sqrt(unseen) == pytest.approx(0.025 * np.sqrt(2.0))
-    assert np.sqrt(seen) == pytest.approx(0.025 * np.sqrt(2.0), rel=1e-3)
-    moves = two(1.0, 1e-6).draw(4000, np.random.default_rng(2)).moves
-    assert np.std(moves) == pytest.approx(np.sqrt(seen), rel=0.05)
-
-
-def test_draws_are_off_by_as_much() -> None:
-    moves = standing(0.0, 0.0, 1.0).draw(4000, np.random.default_rng(1)).moves
-    assert np.std(moves) == pytest.approx(0.8 * 0.03, rel=0.05)
+@pytest.mark.parametrize("seen", [0.0, 1.0])
+def test_what_each_alone_would_show_both_together_hide(seen: float) -> None:
+    """Of e1 + e2 and e1 - e2, as of both thrusters, the sum is not seen: off by both of them."""
+    both = (TAKEN_UP + seen * SEEN, TAKEN_UP - seen * SEEN)
+    found = standing(*both, left=0.0, level=1e-6)
+    off = 0.03 * np.sqrt(2.0)
+    assert np.sqrt(found.average().variances) == pytest.approx(off, rel=1e-3)
+    moves = found.draw(4000, np.random.default_rng(2)).moves
+    assert np.std(moves) == pytest.approx(off, rel=0.05)
 
 
 def test_the_report_says_what_widens_a_range_so() -> None:
