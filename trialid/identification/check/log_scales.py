@@ -18,7 +18,9 @@ from trialid.simulation.integrate import Departure, record_for
 OFF: Final = 0.025
 """Standard deviation of a log's scale: half of the 5 % that a rate-of-turn indicator may be off by
 (IMO resolution A.526(13)). Rudder feedbacks are 1 to 2 deg off at 35 deg, which is as much; of
-revolutions and winds nobody says, and it is taken to be the same."""
+revolutions and winds nobody says, and it is taken to be the same. Of 20 ships whose logs scatter by
+that (seeds 51000 to 51019) ranges hold 96.7 % of the truths; with half of it 95.6, with twice 98.3
+in ranges wider by a third."""
 
 BETTER: Final = 0.01
 """The same of a speed log, by the 2 % of resolution A.824(19), and of a rate of turn beside a
