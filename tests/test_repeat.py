@@ -202,6 +202,7 @@ def test_the_library_gives_the_same(place: Path) -> None:
     assert found.differing == 0
 
 
+@pytest.mark.study(turn="each")
 def test_what_an_effect_joined_is_judged_by_add_as_by_the_run_of_its_file(
     made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

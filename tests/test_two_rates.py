@@ -93,6 +93,7 @@ def refitted(stage, effect):
     return row.eps_rmsn_refitted
 
 
+@pytest.mark.study(turn="each")
 def test_two_poles_are_named_and_preferred_to_one(tmp_path):
     write_logs(tmp_path, poles=(4.5, 5.0))
     done = found(pipeline(tmp_path))

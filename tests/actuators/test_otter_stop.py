@@ -104,6 +104,7 @@ def test_more_is_ordered_astern_than_nothing() -> None:
 REACH = "head reach [m]"
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("held", [0.1, 9.0, 0.5])
 def test_a_thrust_astern_that_nobody_told_goes_by_that_ahead(held: float) -> None:
     """An outsider's was held at nine times that ahead: 0.06 m (0 to 0.25) of a true 0.69.

@@ -42,6 +42,7 @@ def log(
     return path
 
 
+@pytest.mark.study(turn="each")
 def test_a_boat_of_two_shafts_is_begun_and_fitted(tmp_path, monkeypatch) -> None:
     done = started(tmp_path, monkeypatch, [log(tmp_path / "a.csv")], "--length 2")
     assert done.exit_code == 0, done.output

@@ -247,6 +247,7 @@ def test_start_writes_a_row_for_each_rudder_and_says_what_the_turn_shows(tmp_pat
     assert "\ndelta = {" in Path("one_p.toml").read_text(encoding="utf-8")
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.real_data
 @pytest.mark.skipif(not NEWCOMER.is_dir(), reason=f"no records in {NEWCOMER}")
 def test_a_ferry_of_a_stranger_with_two_rudders(tmp_path, monkeypatch) -> None:

@@ -76,6 +76,7 @@ def test_a_rate_of_turn_in_another_unit(fault):
     assert right > 0.8
 
 
+@pytest.mark.study(turn="each")
 def test_a_rate_of_turn_positive_to_port():
     refused, right = shares(range(28), "r", lambda y: -y, "sign")
     assert refused > 0.75

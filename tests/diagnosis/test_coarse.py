@@ -91,6 +91,7 @@ def test_a_trial_in_which_an_output_rests_does_not_stand_in_the_way(
     assert samples_together(resting) == samples_together(fit) == 3
 
 
+@pytest.mark.study(turn="each")
 def test_what_is_tried_is_fitted_to_means_and_its_error_is_that_of_every_sample(
     fit: Fit, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -70,6 +70,7 @@ def test_a_current_has_its_name(seed):
 WATER = replace(SETTINGS, nuisance=("initial_state", "current"))
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("seed", [61, pytest.param(62, marks=pytest.mark.study(turn="each"))])
 @pytest.mark.parametrize("current", [0.0, 0.8])
 def test_a_current_that_is_looked_for_is_found_and_leaves_the_ship_alone(seed, current):

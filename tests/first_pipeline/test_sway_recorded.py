@@ -47,6 +47,7 @@ def begun(folder: Path, *, rate: float = 1.0, sway: float = 1.0, still: float = 
     return made
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("rate", [pytest.param(1.0, marks=pytest.mark.study(turn="each")), -1.0])
 def test_a_sway_outwards_is_fitted_with_its_coefficients(tmp_path: Path, rate: float) -> None:
     """A rate without a heading is taken to be positive to starboard, so -1 turns the ship round."""

@@ -150,6 +150,7 @@ def test_no_change_is_found_where_there_is_none() -> None:
     assert loose >= 6
 
 
+@pytest.mark.study(turn="each")
 def test_what_a_fleet_without_a_change_shows_as_often_is_not_told() -> None:
     """Steps that just show: what counts is how many parameters and ships were looked at."""
     found = [

@@ -92,6 +92,7 @@ def test_what_varies_is_a_row_with_the_voyage_furthest_off() -> None:
     assert (row.beyond_likely, row.p_value < 1e-6) == (True, True)
 
 
+@pytest.mark.study(turn="each")
 def test_what_the_likely_ranges_leave_open_does_not_vary() -> None:
     """Ranges as they should be: told of a fleet in twenty."""
     many = sum(

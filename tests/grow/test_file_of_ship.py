@@ -23,6 +23,7 @@ def fitted(folder, seed, heading, of):
     return run.fit_of(pipeline, run.align_trials(pipeline, silent), available(pipeline), silent)
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("heading", [False, True])
 def test_only_another_ships_file_is_another_ships(tmp_path, heading):
     """Of 21 m with the file of 80 m: 7.7 and 18 times the error, two coefficients clearly unlike.

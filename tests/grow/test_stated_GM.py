@@ -45,6 +45,7 @@ def found(path):
     return fit_of(asked, align_trials(asked, silent), available(asked), silent)
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     "seed",
     [11, *(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in range(12, 17))],

@@ -66,6 +66,7 @@ def test_of_two_one_that_is_worth_nothing_is_dropped_again(
     assert grow.survivors(done) == ("a", "c")
 
 
+@pytest.mark.study(turn="each")
 def test_no_two_are_worth_a_fit_where_one_of_them_does_as_much():
     """Of a ship with a list the list takes half of it off, and so do the list and a damping."""
     truth = (MODEL + CATALOGUE["static_list"]).with_values({"Nrar": -0.0084, "a_0": 0.05})

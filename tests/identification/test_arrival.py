@@ -104,6 +104,7 @@ def test_what_is_of_roll_is_told_by_its_letters():
     assert names == {"Kv", "Kr", "Kdelta", "Kp", "GM", "b_phi", "tau_phi", "p(0)", "phi(0)"}
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("seed", [1016, 1022])
 def test_a_metacentric_height_that_is_wrong_is_not_called_known(seed):
     """Models of 6 and 2 m that hardly roll: 1.8 and 0.6 times the truth, and it is said."""
@@ -116,6 +117,7 @@ def test_a_metacentric_height_that_is_wrong_is_not_called_known(seed):
     assert any("does not tell GM" in line for line in remarks(fit))
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     ("seed", "ratio"),
     [
@@ -135,6 +137,7 @@ def test_a_roll_damped_as_no_ships_is_tells_no_gm(seed, ratio):
     assert any("as no ship's is" in line for line in remarks(fit))
 
 
+@pytest.mark.study(turn="each")
 def test_a_gm_that_leans_on_a_clock_no_sensor_has_is_not_told():
     """She was found with a fifth of her GM and an inclinometer two seconds early, and no rival."""
     drawn = draw(9982)
@@ -144,6 +147,7 @@ def test_a_gm_that_leans_on_a_clock_no_sensor_has_is_not_told():
     assert any("is no sensor's" in line for line in remarks(fit))
 
 
+@pytest.mark.study(turn="each")
 def test_a_gm_that_leans_on_two_clocks_each_just_likely_is_not_told():
     """A swell was taken for her roll, by an inclinometer 3.0 and 2.7 deviations early."""
     drawn = draw(10582)
@@ -183,6 +187,7 @@ def at(end, theta):
     return replace(end, minimum=replace(end.minimum, theta=theta))
 
 
+@pytest.mark.study(turn="each")
 def test_a_gm_that_the_record_tells_has_no_rivals():
     """Damped by 0.02 to 0.15 of what is critical, and rolled by her rudder."""
     for seed in (7209, 7248):

@@ -83,6 +83,7 @@ def test_half_or_twice_of_what_is_likely_does_not_move_the_ship(short, factor, m
         assert changed.value(name) == pytest.approx(usual.value(name), abs=0.02 * abs(truth)), name
 
 
+@pytest.mark.study(turn="each")
 def test_noise_alone_never_contradicts_a_prior():
     """Ten records with nothing wrong but noise, of either colour."""
     for seed in range(5):

@@ -119,6 +119,7 @@ def test_a_file_that_says_nothing_or_calls_it_exact_is_refused():
 # --- what they do ---------------------------------------------------------------------------------
 
 
+@pytest.mark.study(turn="each")
 def test_what_is_hardly_seen_is_held_and_what_is_seen_is_not():
     """A zig-zag of two degrees tells nothing of quadratic drag, and a rudder's moment well."""
     off = {"Yv": 1.15, "Nr": 0.8, "Ydelta": 0.85, "Nvav": 1.5, "Yvav": 0.8}

@@ -60,6 +60,7 @@ def gm_of(seed, stronger, lever=1.0):
     return row, fit.contradicted
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.study(turn="each"))])
 def test_a_rudder_unlike_her_files_leaves_gm_its_range(seed):
     row, against = gm_of(seed, stronger=4.0)

@@ -34,5 +34,6 @@ def test_standard_errors_alone_do_not():
     assert share(done, "1.96 +-")[0] < 0.8 < share(done, "likely")[0]
 
 
+@pytest.mark.study(turn="each")
 def test_a_record_counts_the_same_twice():
     assert count(CASES[0], 3) == count(CASES[0], 3)

@@ -144,6 +144,7 @@ def test_the_ranges_of_the_shipped_example_hold_its_truth(result):
         assert high - low < 0.26 * true
 
 
+@pytest.mark.study(turn="each")
 def test_a_run_without_a_fit_relies_on_none(folder):
     """The first rudder alone, with imo asked for: numbers, and a warning."""
     text = (folder / "hidden.toml").read_text(encoding="utf-8")

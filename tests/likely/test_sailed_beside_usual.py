@@ -100,6 +100,7 @@ def test_the_folder_keeps_both_hulls(folder, model):
         assert mine[name][1] == pytest.approx(ends, rel=1e-4)
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     "words",
     [

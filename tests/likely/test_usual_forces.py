@@ -111,6 +111,7 @@ def test_a_range_says_what_widens_it_and_holds_the_truth():
         assert wide.likely[0] <= narrow.likely[0] < narrow.likely[1] <= wide.likely[1]
 
 
+@pytest.mark.study(turn="each")
 def test_with_all_forces_a_parameter_is_hers():
     """A quarter of her Nv alone, all of it with the forces of a hull like hers."""
     ship = drawn(27)
@@ -150,6 +151,7 @@ def test_without_her_file_it_is_done_for_a_hull_that_is_nearly_linear():
     assert [bool(found) for found in done] == [True, True, False]
 
 
+@pytest.mark.study(turn="each")
 def test_a_hull_that_her_file_calls_exact_is_left_out():
     fit = begun(sailed(drawn(27), 27), Nvav=0.0)
     assert usual_forces.with_hull(fit, "modulus") is None

@@ -113,6 +113,7 @@ def test_as_begun_nothing_of_the_yacht_is_to_be_believed(begun):
     assert all(abs(x) < 3 * DELAY for x in delays)  # what is likely of a delay, three times
 
 
+@pytest.mark.study(turn="each")
 def test_her_yaw_alone_converges(begun):
     """Ours: 57.4 %, Ndelta 0.074 +- 0.017, Nr -0.032 +- 0.007."""
     yaw = {

@@ -101,6 +101,7 @@ def test_the_fitted_derivatives_are_near_those_of_captive_tests(linear):
     assert value["Yvav"] < 0.0
 
 
+@pytest.mark.study(turn="each")
 def test_scaling_by_the_recorded_speed_makes_it_worse(linear):
     """Ours: 7.9 % with the speed stated, 12.0 % with the speed read; held out 9.2 and 9.9 %."""
     stated = run(yaw_alone(linear)).fit
@@ -109,6 +110,7 @@ def test_scaling_by_the_recorded_speed_makes_it_worse(linear):
     assert stated.eps_rmsn_check < read.eps_rmsn_check
 
 
+@pytest.mark.study(turn="each")
 def test_nonlinear_yaw_damping_is_named_and_holds_on_the_other_runs(linear):
     """Ours: C_D, 7.9 to 6.3 %, held out 9.2 to 6.7 %; Nrrr does 6.3 and 7.2 %.
 

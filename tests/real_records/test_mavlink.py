@@ -64,6 +64,7 @@ def _factor(log, form, k):
     return float(form.units[k].split()[0]) if " " in form.units[k] else 1.0
 
 
+@pytest.mark.study(turn="each")
 def test_every_value_of_a_telemetry_log(monkeypatch):
     monkeypatch.setenv("MAVLINK20", "1")
     from pymavlink import mavutil

@@ -47,6 +47,7 @@ def test_a_sensor_that_is_late_logs_what_was() -> None:
     np.testing.assert_allclose(values[t > 1.0], t[t > 1.0] - 0.7, atol=1e-6)
 
 
+@pytest.mark.study(turn="each")
 def test_a_zigzag_reverses_where_the_heading_is_on_the_side_of_the_rudder() -> None:
     """A ship that turns with her rudder, a tenth of it each second."""
     delta = zigzag(10.0, 10.0, lambda rudder: np.cumsum(rudder) * 0.1 * 0.1)

@@ -47,5 +47,6 @@ def test_an_inflow_that_differs_by_drift_alone_is_named():
     assert found.verdict.effect == "rudder_flow_asymmetry"
 
 
+@pytest.mark.study(turn="each")
 def test_the_same_ship_without_either_has_neither():
     assert diagnose(identify(record(MODEL, 33), MODEL, FIT)).verdict.effect is None

@@ -72,6 +72,7 @@ def test_measures_over_the_ground_and_through_the_water() -> None:
     assert abs(over["tactical diameter"] - still["tactical diameter"]) > 100.0  # what it is about
 
 
+@pytest.mark.study(turn="each")
 def test_the_models_advance_is_as_open_as_the_instant_of_the_order() -> None:
     """Orders logged each 2 s: half a sample is 7 m of approach; a rudder's way tells it better."""
     angles = {n: without_order(t) for n, t in logged(3).items()}

@@ -63,6 +63,7 @@ def without_noise(noisy: Trial, clean: Trial, but: str) -> Trial:
     return replace(clean, signals=less)
 
 
+@pytest.mark.study(turn="each")
 def test_the_drift_taken_off_goes_on_from_how_she_lay_and_is_as_open_as_her_gyro_leaves_it() -> (
     None
 ):

@@ -120,6 +120,7 @@ def test_draws_fill_the_range_of_a_number() -> None:
     assert np.mean(values) == pytest.approx(0.5 * (low + high), abs=0.15 * (high - low))
 
 
+@pytest.mark.study(turn="each")
 def test_a_run_is_drawn_by_its_ranges(run_folder: Path) -> None:
     """The report's range holds about 95 of 100 draws; the same seed gives the same ships."""
     found = run(run_folder.parents[1] / "used.toml")

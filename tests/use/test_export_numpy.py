@@ -102,6 +102,7 @@ def test_the_command_writes_it(run_folder: Path, tmp_path: Path) -> None:
     assert "the suffix says the format, .py; " in other.stderr
 
 
+@pytest.mark.study(turn="each")
 def test_a_run_in_python_hands_over_the_same(
     run_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

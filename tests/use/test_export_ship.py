@@ -35,6 +35,7 @@ def exported(run_folder: Path, tmp_path: Path) -> Path:
     return project
 
 
+@pytest.mark.study(turn="each")
 def test_fitted_again_nothing_moves(run_folder: Path, exported: Path) -> None:
     """By no more than a hundredth of its standard error, from where the first fit ended."""
     told = trialid_("run", str(exported / "used.toml"), "--quiet", "--out", str(exported / "r"))

@@ -47,6 +47,7 @@ def as_json(folder: Path, out: Path) -> dict:
     return json.loads(out.read_text(encoding="utf-8"))
 
 
+@pytest.mark.study(turn="each")
 def test_it_is_what_would_be_worked_out(copied: Path, tmp_path: Path, reads: list[str]) -> None:
     """The model, its covariance, and a manoeuvre's ranges, all to 1e-9; the logs are not read."""
     kept, model = as_json(copied, tmp_path / "kept.json"), finished_model(copied, silent)

@@ -35,6 +35,7 @@ def model(run_folder: Path) -> FinishedModel:
 # --- another number -----------------------------------------------------------------------------
 
 
+@pytest.mark.study(turn="each")
 def test_another_speed_is_that_of_a_ship_built_so(model: FinishedModel) -> None:
     """In the prime system nothing but the speed changes, and a slower ship is told as unseen."""
     found = predict_manoeuvre(model, ASKED, WhatIf({"speed": 5.0}))

@@ -41,6 +41,7 @@ def test_one_button_adds_both(before: Shown) -> None:
     assert "<button" not in screen.parts(before)["verdict"]
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.usefixtures("quick_looks")
 def test_the_history_keeps_what_two_edits_began_with(path: Path, gate: Gate) -> None:
     """The one comes while the other is worked out, which is let go."""

@@ -17,6 +17,7 @@ from trialid.workflow.run import run
 pytestmark = pytest.mark.usefixtures("quick_looks")
 
 
+@pytest.mark.study(turn="each")
 def test_a_second_window_loses_nothing(path: Path) -> None:
     with opened(path) as desk:
         seen_by_both = diagnosed(desk).version
@@ -44,6 +45,7 @@ def test_an_edit_in_an_editor_is_not_overwritten(path: Path) -> None:
         assert path.read_text(encoding="utf-8") == theirs
 
 
+@pytest.mark.study(turn="each")
 def test_an_edit_made_elsewhere_is_taken_over(path: Path) -> None:
     text = path.read_bytes()
     with opened(path) as desk:
@@ -100,6 +102,7 @@ def test_a_broken_file_keeps_the_screen(path: Path, broken: str | None) -> None:
         assert result(desk) == run(load(path)).result
 
 
+@pytest.mark.study(turn="each")
 def test_a_file_mended_to_what_it_was(path: Path) -> None:
     text = path.read_bytes()
     with opened(path) as desk:

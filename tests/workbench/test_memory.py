@@ -39,6 +39,7 @@ def test_what_nothing_holds_is_given_back() -> None:
     assert before - after > 0.8 * freed
 
 
+@pytest.mark.study(turn="each")
 def test_it_is_given_back_after_every_model(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[str] = []
     monkeypatch.setattr(desk_module, "give_back_memory", lambda: told.append("given back"))

@@ -132,6 +132,7 @@ def test_the_copy_in_a_run_s_folder_is_what_ran(recipe: Pipeline, tmp_path: Path
     assert ask(recipe, "drop", effect=recipe.model.effects[-1]).edit is not None
 
 
+@pytest.mark.study(turn="each")
 def test_strange_wishes_end_in_a_line_or_in_a_pipeline(recipe: Pipeline) -> None:
     """Whatever is asked for, what comes back can be loaded, and holds no more than was asked."""
     chance = random.Random(1)

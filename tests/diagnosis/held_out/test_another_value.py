@@ -30,6 +30,7 @@ def fitted(ahead=1.0, settings=SETTINGS, her=MODEL, **times):
     return identify([*made[:-1], replace(made[-1], signals=signals)], her, settings)
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     "times",
     [0.4, 1.5, *(pytest.param(x, marks=pytest.mark.study(turn="each")) for x in (0.6, 2.0))],
@@ -45,6 +46,7 @@ def test_a_ship_with_another_gm_is_told(times):
     assert left < 1.3 * fit.eps_rmsn
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     "times", [0.7, *(pytest.param(x, marks=pytest.mark.study(turn="each")) for x in (0.78, 1.3))]
 )

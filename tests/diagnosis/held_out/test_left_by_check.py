@@ -45,6 +45,7 @@ def said(fit, of=covariance):
     return with_held_out(fit, NOTHING, lambda: of(fit), 0.05)
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     "noise", [white, pytest.param(waves, marks=pytest.mark.study(turn="each"))]
 )

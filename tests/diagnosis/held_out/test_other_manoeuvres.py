@@ -72,6 +72,7 @@ def test_what_no_name_mends_stays_a_failed_fit():
     assert found.after is None
 
 
+@pytest.mark.study(turn="each")
 def test_a_name_with_which_the_fit_fails_as_before_mends_nothing(mended, found, monkeypatch):
     assert found.verdict.kind == "missing"
     lost = Inadequate("a held-out trial is foretold by nothing", "look at it", may_lack=True)
@@ -86,6 +87,7 @@ def test_a_rudder_logged_the_wrong_way_stays_one_beside_a_hidden_effect():
     assert diagnose(fit).verdict.kind == "no fit"
 
 
+@pytest.mark.study(turn="each")
 def test_the_damping_is_named_although_its_slope_foretells_less_than_a_late_gyro():
     """The gyro takes 11 % off and leaves the trial held out as it is; it is shown less surely."""
     found = diagnose(sailed((20,), 5, of_file=12, linear=0.05, rudder=2.0))
@@ -94,6 +96,7 @@ def test_the_damping_is_named_although_its_slope_foretells_less_than_a_late_gyro
     assert found.after.fit.eps_check < 0.5 * found.before.fit.eps_check
 
 
+@pytest.mark.study(turn="each")
 def test_a_name_that_explains_little_where_others_leave_much_is_none():
     """A roll by the rudder took 3 % off; the damping would take 85 %."""
     found = diagnose(sailed((20,), 2, of_file=8, linear=0.3))
@@ -125,6 +128,7 @@ def test_a_name_stays_by_what_it_takes_off_either(mended, found):
     assert judged(0.99, 0.05) == "missing"
 
 
+@pytest.mark.study(turn="each")
 def test_of_a_long_record_means_are_held_against_means(monkeypatch):
     """Most of what every sample leaves is noise here, and means hold little of that."""
     monkeypatch.setattr(thinning, "LONGEST", 600)

@@ -105,6 +105,7 @@ def test_an_effect_that_does_as_much_keeps_its_name(one_apart: Fit, alike: Fit) 
     assert settle_trials(one_apart, NAMED, one_apart).kind == "cannot tell"
 
 
+@pytest.mark.study(turn="each")
 def test_one_held_out_is_told_beside_the_name(one_held_apart: Fit) -> None:
     found = contradicting_held_out(one_held_apart)
     assert found is not None

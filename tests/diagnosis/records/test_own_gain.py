@@ -94,6 +94,7 @@ def test_a_force_at_large_angles_is_no_gain_of_the_one_trial_that_has_them(monke
     assert own_gains(fit)[0].factor.trial == "zigzag-20"
 
 
+@pytest.mark.study(turn="each")
 def test_an_effect_that_leaves_as_little_keeps_its_name(indicator: Fit) -> None:
     as_much = own_gains(indicator)[0].fit  # as if an effect had taken it off
     assert gain_in_doubt(indicator, [indicator]) is not None
@@ -138,6 +139,7 @@ def test_a_trial_held_out_of_which_nothing_is_compared_hides_no_other() -> None:
     assert left_of(more, fit, None, "check") == pytest.approx(1.0)
 
 
+@pytest.mark.study(turn="each")
 def test_a_trial_held_out_is_told_too() -> None:
     """As the others have it she is foretold badly, and with that factor as well as they are."""
     fit = fitted("delta", 1.3, held="zigzag-10")

@@ -80,6 +80,7 @@ def test_of_a_turn_alone_it_is_not_said(outputs, told, monkeypatch):
     assert (rudder_in_doubt(fit) is not None) is told
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(("lag", "early"), [(0.0, 0.0), (0.0, 3.0)])
 def test_of_a_rudder_in_time_or_one_output_that_is_early_it_is_not_said(lag, early):
     """A rate alone is early by a hull that answers sooner than its model."""

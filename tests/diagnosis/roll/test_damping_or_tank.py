@@ -34,6 +34,7 @@ def verdict(seed, **how):
     return diagnose(identify(trials, model.with_values({"GM": 0.75 * her.GM}), settings)).verdict
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     "how", [SHIPS[0], *(pytest.param(s, marks=pytest.mark.study(turn="each")) for s in SHIPS[1:])]
 )

@@ -49,6 +49,7 @@ def test_a_light_roll_that_dies_away_in_the_record_is_her_own():
     assert said(fit) == []
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(("ratio", "hers"), [(0.004, True), (0.0, False)])
 def test_a_swing_let_go_may_die_away_slowly_but_a_swell_goes_on(ratio, hers):
     """0.004 of what is critical in 25 cycles leave 0.66 of it; of the other nothing is lost."""

@@ -46,6 +46,7 @@ def told_as_unknown(fit: Fit) -> bool:
     return said and min(found) < GM < max(found)
 
 
+@pytest.mark.study(turn="each")
 def test_a_swells_period_is_not_told_as_her_gm() -> None:
     """Damped by 0.037 of what is critical, as any ship, four times her GM stood without a word."""
     fit = in_swell(5.0, 83)

@@ -56,6 +56,7 @@ def test_it_is_named_where_the_shaft_changes(seed):
     assert done.after.fit.eps_rmsn < 0.25 * done.before.fit.eps_rmsn
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("seed", [61, pytest.param(62, marks=pytest.mark.study(turn="each"))])
 def test_it_is_not_where_the_rudder_stands_in_free_flow(seed):
     assert found(MODEL, seed).verdict.kind == "nothing missing"

@@ -34,6 +34,7 @@ def logs(folder: Path, orders) -> list[Path]:
     return found
 
 
+@pytest.mark.study(turn="each")
 def test_a_dead_band_that_orders_lie_in_is_named_and_shown(tmp_path: Path) -> None:
     begun(tmp_path, *logs(tmp_path, some_small))
     done = run(pipeline_file.load(tmp_path / "p.toml"))

@@ -76,6 +76,7 @@ def test_what_is_sampled_and_held_is_no_jump() -> None:
     assert stays(T, seen, 2.0).sum() <= 6
 
 
+@pytest.mark.study(turn="each")
 def test_the_lag_has_a_name_and_no_sensor_is_late(tmp_path: Path) -> None:
     logs = []
     for i in range(3):

@@ -58,6 +58,7 @@ def pods(
 NAMES = ("Azimuth port angle [deg]", "Azimuth stbd angle [deg]")
 
 
+@pytest.mark.study(turn="each")
 def test_pods_are_begun_with_their_angles(tmp_path: Path) -> None:
     logs = [pods(tmp_path / f"run{i}.csv", NAMES, i) for i in range(3)]
     made = begun(tmp_path, *logs)
@@ -93,6 +94,7 @@ def test_an_angle_of_another_side_than_in_the_other_logs_is_told(
     assert ("FILL IN starboard or port" in text) == (turned_round == (2,))
 
 
+@pytest.mark.study(turn="each")
 def test_a_ferry_with_a_pod_at_either_end_is_begun(tmp_path: Path) -> None:
     """An outsider's had to be mapped by hand; the one that stands ahead turns her the other way."""
     logs = [pods(tmp_path / f"run{i}.csv", AT_ENDS, i, turns=ENDS, less=2.0) for i in range(3)]
@@ -192,6 +194,7 @@ def test_two_that_always_do_the_same_are_placed_by_their_numbers(tmp_path: Path)
     assert ship.count('command = "revolutions"') == 2
 
 
+@pytest.mark.study(turn="each")
 def test_two_that_do_not_are_asked_for_and_run_when_that_is_filled_in(tmp_path: Path) -> None:
     made = begun(tmp_path, pods(tmp_path / "a.csv", OF_NUMBER, turns=NUMBERED, less=0.2))
     assert len(made.to_fill) == 2

@@ -28,6 +28,7 @@ def check(tmp_path, seed, count):
     assert 0.1 * count < read < 0.9 * count
 
 
+@pytest.mark.study(turn="each")
 def test_some_drawn_workbooks(tmp_path):
     check(tmp_path, 1, 60)
 

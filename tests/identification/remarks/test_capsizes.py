@@ -18,6 +18,7 @@ def test_a_ship_that_capsizes_at_once_is_asked_for_her_gm():
         identify([s175q.zigzag(20)], replace(s175q.MODEL, ship=ship), free)
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize(
     ("drift", "heel", "GM"),
     [

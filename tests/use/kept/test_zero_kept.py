@@ -49,6 +49,7 @@ def turned(model: FinishedModel, rudder: float, **given: float) -> float:
     return float(np.rad2deg(predict_orders(model, orders, "held").motion.motion["r"][-1]))
 
 
+@pytest.mark.study(turn="each")
 def test_a_speed_among_the_orders_takes_no_zero_away(model: FinishedModel) -> None:
     assert turned(model, 0.0, u=SPEED) == pytest.approx(turned(model, 0.0), rel=0.05)
     assert abs(turned(model, 0.0, u=SPEED)) > 10.0 * abs(turned(model, -OFF, u=SPEED))

@@ -29,6 +29,7 @@ def model(run_folder: Path, monkeypatch: pytest.MonkeyPatch) -> FinishedModel:
     return finished_model(run_folder, silent)
 
 
+@pytest.mark.study(turn="each")
 @pytest.mark.parametrize("words", [[], ["circle", "35"]])
 def test_what_is_written_gives_the_same_again(model, words: list[str], tmp_path: Path) -> None:
     made = (

@@ -84,6 +84,7 @@ def test_a_file_that_is_refused_is_told_in_its_row(screen: Screen) -> None:
     page.locator(".hand-over li", has_text="autopilot").locator(".complaint").wait_for()
 
 
+@pytest.mark.study(turn="each")
 def test_on_a_narrow_screen_the_panel_is_below_its_tab(desk: Desk, tmp_path: Path) -> None:
     with (
         quick.serving(desk) as address,
@@ -96,6 +97,7 @@ def test_on_a_narrow_screen_the_panel_is_below_its_tab(desk: Desk, tmp_path: Pat
             assert tab.bounding_box()["y"] < screen.page.locator(panel).bounding_box()["y"]
 
 
+@pytest.mark.study(turn="each")
 def test_what_was_sailed_says_when_it_is_of_an_earlier_model(screen: Screen) -> None:
     page = used(screen.page)
     sail(page, "circle 20")

@@ -83,6 +83,7 @@ def test_every_step_at_a_desk_has_the_name_of_its_edit(path: Path) -> None:
         assert 'class="rose"' in error
 
 
+@pytest.mark.study(turn="each")
 def test_a_model_that_an_effect_joined_has_grown(
     path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -100,6 +101,7 @@ def test_a_model_that_an_effect_joined_has_grown(
     assert asked == [False, True]
 
 
+@pytest.mark.study(turn="each")
 def test_the_model_before_the_first_edit_stays_in_the_history(path: Path) -> None:
     with opened(path) as desk:
         diagnosed(desk)
