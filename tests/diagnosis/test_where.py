@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -229,6 +230,13 @@ def test_windows_scale_with_the_root_of_the_length():
     assert replace(left, fit=replace(left.fit, model=model)).time_scale == pytest.approx(0.1)
 
 
+def seen(**signals):
+    """Signals of a ship of 175 m beside the residuals of a record."""
+    parts = leftover(identify(record(11, white), MODEL, FIT)).parts
+    rudder = signals["delta"]
+    return SimpleNamespace(parts=parts, time_scale=1.0, rudder=lambda: rudder, signal=signals.get)
+
+
 @pytest.mark.parametrize(("angle", "turn", "words"), [
     (np.where(np.arange(120) < 60, 0.17, -0.17), np.zeros(120), "rudder reversal to port"),
     (np.sign(np.sin(np.arange(120) / 10.0)) * 0.17, np.zeros(120), "rudder reversals"),
@@ -237,30 +245,17 @@ def test_windows_scale_with_the_root_of_the_length():
     (np.zeros(120), np.zeros(120), "straight course"),
     (None, np.where(np.arange(120) < 100, -0.002, -0.01), "slow turn to port"),
     (None, np.where(np.arange(120) < 118, 0.0, 0.01), "straight course"),
+    (None, np.full(120, -2.5e-4), "straight course"),
+    (None, np.full(120, -3.5e-4), "steady turn to port"),
 ])  # fmt: skip
 def test_what_the_ship_was_doing(angle, turn, words):
-    left = leftover(identify(record(11, white), MODEL, FIT))
-    signals = {"delta": angle, "r": turn}
-
-    class Seen:
-        parts = left.parts
-        rudder = staticmethod(lambda: signals["delta"])
-        signal = staticmethod(signals.get)
-
-    assert ship_activity(Seen(), slice(0, 120)) == words
+    assert ship_activity(seen(delta=angle, r=turn), slice(0, 120)) == words
 
 
 def test_rolling_while_the_rudder_rests_is_at_the_natural_frequency():
-    left = leftover(identify(record(11, white), MODEL, FIT))
-    t = 0.5 * np.arange(120)
-    roll = 0.1 * np.sin(2.0 * np.pi * t / 15.0)
-
-    class Seen:
-        parts = left.parts
-        rudder = staticmethod(lambda: np.zeros(120))
-        signal = staticmethod({"r": np.zeros(120), "phi": roll}.get)
-
-    assert ship_activity(Seen(), slice(0, 120)).startswith(
+    roll = 0.1 * np.sin(2.0 * np.pi * 0.5 * np.arange(120) / 15.0)
+    here = seen(delta=np.zeros(120), r=np.zeros(120), phi=roll)
+    assert ship_activity(here, slice(0, 120)).startswith(
         "rolling at its natural frequency, period 15 s"
     )
 

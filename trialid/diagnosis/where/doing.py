@@ -18,6 +18,11 @@ TURNING: Final = 0.5
 STRAIGHT: Final = 0.1
 """Below this share of it the course is straight; between the two she turns slowly."""
 
+INDICATED: Final = np.deg2rad(1.0) / 60.0
+"""[rad/s] So slow a turn of a ship of 175 m is a straight course, of another by Froude's law: twice
+what IMO A.526 lets a rate-of-turn indicator be off. In a trial in which she never turns the largest
+rate is no measure."""
+
 STEADY: Final = 0.2
 """A turn whose rate varies by less than this share of its mean is steady."""
 
@@ -30,7 +35,7 @@ SPEEDING: Final = 0.05
 
 def ship_activity(left: Leftover, stretch: slice) -> str:
     """What the ship was doing in samples of one trial: rudder first, then turn, roll and speed."""
-    angle, turn = left.rudder(), left.signal("r")
+    angle, turn = left.rudder(), _seen_turn(left, stretch)
     words = _reversal(angle[stretch]) if angle is not None else ""
     if not words:
         words = _turn(turn, stretch) if turn is not None else ""
@@ -41,6 +46,14 @@ def ship_activity(left: Leftover, stretch: slice) -> str:
         words = _course(turn, stretch) if turn is not None else _held(angle, stretch)
     speed = _speed(left, stretch)
     return f"{words}, {speed}" if speed else words
+
+
+def _seen_turn(left: Leftover, stretch: slice) -> Vector | None:
+    """The rate of turn of all trials [rad/s]; zeros where a helmsman would see none here."""
+    turn = left.signal("r")
+    if turn is None or abs(float(turn[stretch].mean())) * left.time_scale > INDICATED:
+        return turn
+    return np.zeros_like(turn)
 
 
 def _reversal(angle: Vector) -> str:

@@ -10,6 +10,9 @@ from trialid.names import labels
 from trialid.report.terminal.terminal import Words, add_row, new_table, number
 
 DIGITS: Final = 4
+ROUNDED: Final = 1e-9
+"""Less of the width of its range is what rounding left of 0: a drift of -4e-16 m of a stop."""
+
 LINES: Final = 6
 """Lines that a sentence may take."""
 
@@ -22,8 +25,7 @@ def prediction_table(name: str, made: PredictedMotion, words: Sequence[str]) -> 
     if made.numbers:
         table = new_table("", "value", "likely from", "to", words=1)
         for label, (value, ends) in made.numbers.items():
-            low, high = ends or (None, None)
-            add_row(table, label, *(number(x, DIGITS) for x in (value, low, high)))
+            add_row(table, label, *_ranged(value, ends))
         yield table
     if made.remark:
         yield Words(f"Not come to: {made.remark}.", LINES)
@@ -31,6 +33,14 @@ def prediction_table(name: str, made: PredictedMotion, words: Sequence[str]) -> 
     for signal in (s for s in made.motion if s not in TRACK and s != "psi"):
         add_row(table, *_largest(made, signal))
     yield table
+
+
+def _ranged(value: float, ends: tuple[float, float] | None) -> tuple[str, ...]:
+    """A number with its range, which may not be known."""
+    if ends is None:
+        return number(value, DIGITS), number(None, DIGITS), number(None, DIGITS)
+    shown = 0.0 if abs(value) < ROUNDED * (ends[1] - ends[0]) else value
+    return tuple(number(x, DIGITS) for x in (shown, *ends))
 
 
 def _largest(made: PredictedMotion, signal: str) -> tuple[str, ...]:
