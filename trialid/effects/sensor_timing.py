@@ -3,7 +3,7 @@
 from trialid.ship.effect import Delayed, Effect, Lagged, Parameter, effect
 
 PRACTICE = "sensor practice: typical sizes from data sheets and sea trials"
-CLOCKS = "unsynchronised loggers: 1e-5 to 1e-4"
+CLOCKS = "unsynchronised loggers: 1e-5 to 1e-4; rows counted at a nominal rate: to 0.05"
 
 
 @effect(source=PRACTICE)
@@ -88,37 +88,37 @@ def lag_psi(*, T_psi=Parameter(0.5, "s", low=0.0, high=20.0)):
 
 
 @effect(source=CLOCKS)
-def clock_drift_u(t, *, drift_u=Parameter(0.00005, low=-0.005, high=0.005)):
+def clock_drift_u(t, *, drift_u=Parameter(0.00005, low=-0.05, high=0.05)):
     """u_measured(t) = u(t - drift_u t): a speed log on a clock that runs fast or slow."""
     return Delayed(u=drift_u * t)
 
 
 @effect(source=CLOCKS)
-def clock_drift_v(t, *, drift_v=Parameter(0.00005, low=-0.005, high=0.005)):
+def clock_drift_v(t, *, drift_v=Parameter(0.00005, low=-0.05, high=0.05)):
     """v_measured(t) = v(t - drift_v t): a sway speed on a clock that runs fast or slow."""
     return Delayed(v=drift_v * t)
 
 
 @effect(source=CLOCKS)
-def clock_drift_p(t, *, drift_p=Parameter(0.00005, low=-0.005, high=0.005)):
+def clock_drift_p(t, *, drift_p=Parameter(0.00005, low=-0.05, high=0.05)):
     """p_measured(t) = p(t - drift_p t): a roll rate on a clock that runs fast or slow."""
     return Delayed(p=drift_p * t)
 
 
 @effect(source=CLOCKS)
-def clock_drift_r(t, *, drift_r=Parameter(0.00005, low=-0.005, high=0.005)):
+def clock_drift_r(t, *, drift_r=Parameter(0.00005, low=-0.05, high=0.05)):
     """r_measured(t) = r(t - drift_r t): a rate of turn on a clock that runs fast or slow."""
     return Delayed(r=drift_r * t)
 
 
 @effect(source=CLOCKS)
-def clock_drift_phi(t, *, drift_phi=Parameter(0.00005, low=-0.005, high=0.005)):
+def clock_drift_phi(t, *, drift_phi=Parameter(0.00005, low=-0.05, high=0.05)):
     """phi_measured(t) = phi(t - drift_phi t): a roll angle on a clock that runs fast or slow."""
     return Delayed(phi=drift_phi * t)
 
 
 @effect(source=CLOCKS)
-def clock_drift_psi(t, *, drift_psi=Parameter(0.00005, low=-0.005, high=0.005)):
+def clock_drift_psi(t, *, drift_psi=Parameter(0.00005, low=-0.05, high=0.05)):
     """psi_measured(t) = psi(t - drift_psi t): a heading on a clock that runs fast or slow."""
     return Delayed(psi=drift_psi * t)
 

@@ -70,8 +70,8 @@ def rudder_record_delay(*, tau_delta=Parameter(0.5, "s", low=-5.0, high=5.0)):
     return Delayed(delta=tau_delta)
 
 
-@effect(source="unsynchronised loggers: 1e-5 to 1e-4")
-def clock_drift_delta(t, *, drift_delta=Parameter(0.00005, low=-0.005, high=0.005)):
+@effect(source="unsynchronised loggers: 1e-5 to 1e-4; rows counted at a nominal rate: to 0.05")
+def clock_drift_delta(t, *, drift_delta=Parameter(0.00005, low=-0.05, high=0.05)):
     """delta acts at t what is recorded at t - drift_delta t: the rudder's clock runs fast."""
     return Delayed(delta=drift_delta * t)
 

@@ -128,5 +128,6 @@ class Stream:
 
 def _input_ahead(simulator: Simulator, trial: Trial, values: Mapping[str, float]) -> int:
     """Later samples that a delayed input looks at: at a growing end they are not there yet."""
-    late = late_by(simulator.model, {**simulator.fixed, **values})
-    return max((REACH - int(np.ceil(tau / trial.period)) for tau in late.values()), default=0)
+    late = late_by(simulator.model, {**simulator.fixed, **values}, trial.t)
+    early = (int(np.ceil(np.min(tau) / trial.period)) for tau in late.values())
+    return max((REACH - whole for whole in early), default=0)

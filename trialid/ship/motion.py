@@ -17,7 +17,7 @@ from trialid.ship.mass_matrix import determinant, solve
 from trialid.ship.model import DRIFT, KINEMATICS, ShipModel
 from trialid.ship.prime import mass_scale
 from trialid.ship.rigid_body import ROWS, Balance, rigid_body
-from trialid.ship.signals_now import measured_by, signals_now, values_for
+from trialid.ship.signals_now import inputs_now, measured_by, signals_now, through_gear, values_for
 
 
 @dataclass(frozen=True)
@@ -81,11 +81,12 @@ def effect_parts(
 ) -> Iterator[tuple[Effect, Force | Rate]]:
     """What each effect adds to the motion: forces [SI], rates of its states."""
     recorded: dict[str, Number] = {**model.ship.particulars, **inputs, **states}
-    signals = signals_now(model, recorded, theta)
+    arrived = inputs_now(model, recorded, theta)
+    signals = through_gear(model, arrived, theta)
     for effect in model.effects:
         if not {Force, Rate} & set(effect.forms):
             continue
-        seen = measured_by(model, effect, recorded, signals)
+        seen = measured_by(effect, arrived, signals)
         for part in effect(values_for(model, effect, seen, theta)):
             if isinstance(part, Force):
                 yield effect, _to_SI(model, effect, part, signals)

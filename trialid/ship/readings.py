@@ -48,7 +48,7 @@ def readings(
     for effect in model.effects:
         if not set(SENSORS) & set(effect.forms):
             continue
-        seen = measured_by(model, effect, recorded, signals)
+        seen = measured_by(effect, recorded, signals)
         for part in effect(values_for(model, effect, seen, theta)):
             match part:
                 case Measured():

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from trialid.maths import Number, sqrt
-from trialid.ship.effect import Delayed, Effect, Force, Rate, Steered
+from trialid.ship.effect import Delayed, Effect, Force, Steered
 from trialid.ship.model import STANDSTILL, ShipModel, late, slope
 from trialid.ship.prime import prime_parameter, prime_signal
 
@@ -12,10 +12,25 @@ def signals_now(
     model: ShipModel, recorded: Mapping[str, Number], theta: Mapping[str, Number]
 ) -> dict[str, Number]:
     """States and inputs as they act on the ship, particulars and the speed U; SI."""
+    return through_gear(model, inputs_now(model, recorded, theta), theta)
+
+
+def inputs_now(
+    model: ShipModel, recorded: Mapping[str, Number], theta: Mapping[str, Number]
+) -> dict[str, Number]:
+    """What is recorded, with inputs that act later than they are as they come to the gear; SI."""
     signals = dict(recorded)
     for name, tau in _late_by(model, signals, theta).items():
         # the record comes shifted by the current delay: the value stands, and so does the slope
         signals[name] = signals[name] + (tau - signals[late(name)]) * signals[slope(name)]
+    return signals
+
+
+def through_gear(
+    model: ShipModel, arrived: Mapping[str, Number], theta: Mapping[str, Number]
+) -> dict[str, Number]:
+    """What comes to the gear, as the gear lets it act on the ship, and the speed U; SI."""
+    signals = dict(arrived)
     # what follows by a law of its own does before what is added to it: a play, then an offset
     for effect in sorted(model.effects, key=lambda e: not e.states):
         if Steered in effect.forms:
@@ -52,13 +67,10 @@ def values_for(
 
 
 def measured_by(
-    model: ShipModel, effect: Effect, recorded: Mapping[str, Number], acting: Mapping[str, Number]
+    effect: Effect, known: Mapping[str, Number], acting: Mapping[str, Number]
 ) -> Mapping[str, Number]:
-    """What an effect sees: steering gear and sensors the recorded rudder, forces the acting one.
+    """What an effect sees: forces the acting rudder, others the one that is known to them.
 
-    An order that comes late comes late to the gear too.
+    Sensors know it as it is recorded, steering gear as it comes there.
     """
-    if Force in effect.forms:
-        return acting
-    late_orders = model.late_inputs if Rate in effect.forms else ()
-    return {**recorded, **{n: acting[n] for n in late_orders}, "U": acting["U"]}
+    return acting if Force in effect.forms else {**known, "U": acting["U"]}

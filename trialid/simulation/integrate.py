@@ -224,7 +224,7 @@ def inputs(simulator: Simulator, trial: Trial, known: Mapping[str, float]) -> Ve
     model = simulator.model
     shifts = {word for n in model.late_inputs for word in (late(n), slope(n))}
     columns = {n: _input(model, trial, n) for n in simulator.equations.inputs if n not in shifts}
-    for name, tau in late_by(model, known).items():
+    for name, tau in late_by(model, known, trial.t).items():
         columns[name], by_lag = delay_samples(columns[name], tau / trial.period)
         columns[late(name)] = np.full(trial.samples, tau)
         columns[slope(name)] = by_lag / trial.period
@@ -232,15 +232,15 @@ def inputs(simulator: Simulator, trial: Trial, known: Mapping[str, float]) -> Ve
     return np.column_stack(made) if made else np.zeros((trial.samples, 0))
 
 
-def late_by(model: ShipModel, known: Mapping[str, float]) -> dict[str, float]:
-    """By how much each late input acts after it is recorded [s]."""
-    total = dict.fromkeys(model.late_inputs, 0.0)
+def late_by(model: ShipModel, known: Mapping[str, float], t: Vector) -> dict[str, float | Vector]:
+    """By how much each late input acts after it is recorded [s]; (N,) where its clock drifts."""
+    total: dict[str, float | Vector] = dict.fromkeys(model.late_inputs, 0.0)
     for effect in model.effects if total else ():
         if set(effect.acts_on(Delayed)) & set(total):
             values = {p: known.get(p, 0.0) for p in effect.parameters}
-            for part in effect(dict.fromkeys(effect.signals, 0.0) | values):
+            for part in effect(dict.fromkeys(effect.signals, 0.0) | {"t": t} | values):
                 if isinstance(part, Delayed):
-                    total |= {n: total[n] + float(x) for n, x in part.items() if n in total}
+                    total |= {n: total[n] + x for n, x in part.items() if n in total}
     return total
 
 
