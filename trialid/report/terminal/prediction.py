@@ -44,10 +44,14 @@ def _ranged(value: float, ends: tuple[float, float] | None) -> tuple[str, ...]:
 
 
 def _largest(made: PredictedMotion, signal: str) -> tuple[str, ...]:
-    """A motion where it is farthest from where it begins, with its range there."""
-    values = np.abs(made.motion[signal] - made.motion[signal][0])
-    place = int(np.nanargmax(values))
-    factor, ends = labels.shown_factor(signal), made.ranges[signal]
-    known = [factor * float(x[place]) for x in (made.motion[signal], *ends)]
+    """A motion where it is farthest from where it begins, and how far its ends go to that side.
+
+    Not its range at that time: it may be farthest at another.
+    """
+    motion = made.motion[signal]
+    there, away = np.isfinite(motion), motion - motion[0]
+    most = np.max if away[np.nanargmax(np.abs(away))] >= 0.0 else np.min
+    factor = labels.shown_factor(signal)
+    known = [factor * float(most(x[there])) for x in (motion, *made.ranges[signal])]
     shown = (number(x if np.isfinite(x) else None, DIGITS) for x in known)
     return (labels.label(signal), labels.shown_unit(signal), *shown)
