@@ -50,15 +50,15 @@ PHRASES: Final = {
     "u": "stw, sow, speed through water, speed water, water speed, speed log, log speed, logspeed, "
     "doppler log, em log, surge speed, surge velocity, surge vel, vel surge, forward speed, "
     "fwd speed, speed fwd, speed forward, speed ahead, forward velocity, longitudinal speed, "
-    "longitudinal velocity, long speed, vitesse surface, "
+    "longitudinal velocity, long speed, vitesse surface, boat speed, "
     "fahrt durchs wasser, fahrt durch wasser, fahrt durch das wasser, fart gjennom vannet, fdw, "
-    "fart genom vattnet, fd w, dvl u, vel u, velocity u, loch, corredera",
+    "fart genom vattnet, fd w, dvl u, vel u, velocity u, loch, corredera, bsp, boatspeed",
     "v": "sway speed, sway velocity, sway vel, vel sway, lateral speed, lateral velocity, "
     "lat speed, transverse speed, transverse velocity, dvl v, vel v, velocity v",
     "n": "rpm, shaft speed, shaft rpm, propeller rate, propeller rpm, propeller speed, revs, "
     "drehzahl, wellendrehzahl, propellerdrehzahl, engine rpm, engine speed, motordrehzahl, "
     "jet rpm, impeller rpm, revolutions, rate of revolutions, shaft revolutions, "
-    "propeller revolutions, propeller revolution, revolution rate",
+    "propeller revolutions, propeller revolution, revolution rate, main shaft",
     "V_aw": "aws, apparent wind speed, wind speed apparent, relative wind speed, "
     "wind speed relative, wind velocity relative, wind velo relative, relative wind velocity, "
     "rel wind speed, wind speed rel",

@@ -15,7 +15,8 @@ WHOLE: Final = {
 }  # fmt: skip
 """A shaft turns so often a minute or a second; nothing else is given in `1/min`."""
 PARTS: Final = {
-    "deg": ("°", "º", "deg.", "grader", "graden", "grade", "grados", "gradi", "degrés", "degres"),
+    "deg": ("°", "º", "deg.", "grader", "graden", "grade", "grados", "gradi", "degrés", "degres",
+            "deg true", "deg t", "degt", "°t", "° t", "degrees true", "deg mag", "deg magnetic"),
     "gradian": ("gon", "gons"),
     "s": ("sec", "sec.", "sek", "sek.", "sekunden", "sekunde", "seconds", "second", "secs"),
     "min": ("min.", "minute", "minuten", "minutes"),
@@ -34,6 +35,8 @@ def plain(unit: str) -> str:
 
     >>> [plain(unit) for unit in ("U/min", "min-1", "rev/s", "°/min", "Grad/s", "Knoten")]
     ['rpm', 'rpm', 'rps', 'deg/min', 'deg/s', 'kn']
+    >>> plain("deg true"), plain("degT"), plain("deg magnetic")  # of a compass
+    ('deg', 'deg', 'deg')
     >>> plain("m/s^2"), plain("mm")
     ('m/s^2', 'mm')
     """

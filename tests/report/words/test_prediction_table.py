@@ -39,6 +39,8 @@ def test_how_far_a_motion_goes_may_be_at_another_time(side, shown):
 def test_a_range_that_nobody_knows_is_a_dash():
     nobody = np.full(3, np.nan)
     motion = {"v": np.array([0.0, 1.0, 2.0])}
-    made = PredictedMotion(t=np.arange(3.0), given={}, motion=motion, ranges={"v": (nobody, nobody)})
+    made = PredictedMotion(
+        t=np.arange(3.0), given={}, motion=motion, ranges={"v": (nobody, nobody)}
+    )
     _, table = prediction_table("turn", made, ())
     assert [str(next(iter(column.cells))) for column in table.columns[3:]] == ["\u2013", "\u2013"]

@@ -22,6 +22,7 @@ POSITIVE = frozenset(
 """What stands beside a side behind a unit: `deg, + stbd`."""
 
 BRACKETED = re.compile(r"[\[(](.*)[\])]")
+TO_NORTH = frozenset(("T", "true", "True"))  # a heading's; a tesla is of no ship
 DASHES = frozenset("-\N{EN DASH}\N{EM DASH}")
 
 MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"})
@@ -98,6 +99,8 @@ def head(text: str, unit: str | None = None) -> Head:
     Head(text='roll rate [deg/s]', name='roll rate', unit='deg/s')
     >>> head("rudder [deg] (port positive)")
     Head(text='rudder [deg] (port positive)', name='rudder', unit='deg')
+    >>> head("Heading (T)")  # to true north, no tesla
+    Head(text='Heading (T)', name='Heading', unit=None)
     >>> head("left [-]")
     Head(text='left [-]', name='left', unit=None)
     """
@@ -109,6 +112,8 @@ def head(text: str, unit: str | None = None) -> Head:
                 own = text[at + 1 : -1].strip()
                 if own.lower() in SIDES:  # one of two
                     return Head(text, text, unit or None)
+                if own in TO_NORTH:
+                    return Head(text, text[:at].strip(), unit or None)
                 if ("+" in own or "pos" in own) and without_side(f"deg, {own}") == "deg":
                     return replace(head(text[:at], unit), text=text)  # the side is no unit
                 return Head(text, text[:at].strip(), stated_unit(without_side(own)) or unit or None)

@@ -6,11 +6,12 @@ from typing import Final
 
 import numpy as np
 
+from trialid.identification.approach import APPROACH
 from trialid.inspection import channel_names, name_words
 from trialid.inspection.drives import of_some_steering
 from trialid.inspection.inspected import ChannelInspection, Inspection
 from trialid.inspection.own_scale import why_no_angle
-from trialid.inspection.positions import FASTEST, approach_by_positions
+from trialid.inspection.positions import approach_by_positions
 from trialid.inspection.relations import side, slope_agreement, unit_of_rate, unit_of_speed
 from trialid.inspection.speed_letters import of_either
 from trialid.names import units
@@ -237,7 +238,7 @@ def approach_speed(
     unsaid = [(c, "a speed, through water or over ground unsaid") for c in _some_speed(survey)]
     for source, words in (*through, *ground, *unsaid):
         if (unit := source.stated_unit or source.unit_by_size) is not None:
-            fast = float(np.quantile(np.abs(source.sketch.y), FASTEST))
+            fast = float(np.quantile(np.abs(source.sketch.y), APPROACH))
             said = f"what {source.key} seldom exceeds, {words}"
             return fast * units.factor(unit, "m/s"), said
     if (sailed := approach_by_positions(survey.channels.values())) is not None:
