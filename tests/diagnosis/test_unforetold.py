@@ -10,7 +10,7 @@ from trialid.diagnosis.diagnosed import DiagnoseSettings
 
 def candidate(name, p_value, falls, states=()):
     return SimpleNamespace(
-        effect=SimpleNamespace(name=name, states=states, forms=()),
+        effect=SimpleNamespace(name=name, states=states, forms=(), signals=()),
         allowed=True,
         p_value=p_value,
         carried=SimpleNamespace(falls=falls),
@@ -53,7 +53,7 @@ def test_which_candidates_are_fitted(monkeypatch, ranking, fitted):
     diagnose.refits_of(without_gear, made, DiagnoseSettings(candidates={}), lambda words: None)
     assert asked == fitted
     asked.clear()
-    gear = SimpleNamespace(states=["delta"])  # no hull was fitted for want of one
+    gear = SimpleNamespace(states=["delta"], signals=())  # no hull was fitted for want of one
     with_gear = SimpleNamespace(model=SimpleNamespace(effects=(gear,)))
     diagnose.refits_of(with_gear, made, DiagnoseSettings(candidates={}), lambda words: None)
     named = [name for name in fitted if name != "gear" or ranking[0][0] == "gear"]

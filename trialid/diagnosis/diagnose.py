@@ -33,7 +33,7 @@ from trialid.diagnosis.search.gross_fault import gross_faults, whole_faults, wit
 from trialid.diagnosis.search.refit import Refit, refit
 from trialid.diagnosis.search.rivals import foretold, to_fit
 from trialid.diagnosis.search.score import Candidate
-from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, further_gears, look_beside
+from trialid.diagnosis.search.stand_in import Tried, foretell_far_more, further_ones, look_beside
 from trialid.diagnosis.search.together import Together, two_at_once
 from trialid.diagnosis.verdict import Verdict, decide, gross_verdict, verdict_on_several
 from trialid.diagnosis.where.misfit import where
@@ -267,8 +267,8 @@ def refits_of(
         fitted = [r.candidate.effect.name for r in best]
         best += refit(fit, dampings(named.candidate, ranking, fitted), progress)
         named = likeliest_refit(fit, best, asked.level, grown)
-    if gears := further_gears(fit, named, ranking, best):
-        best += refit(fit, gears, progress)
+    if further := further_ones(fit, named, ranking, best):
+        best += refit(fit, further, progress)
         named = likeliest_refit(fit, best, asked.level, grown)
     others = to_fit(named, ranking, best, grown) if named else ()
     return look_beside(

@@ -9,7 +9,7 @@ fitted without it, and the better of the two is the best.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -25,6 +25,7 @@ from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
 
+WIND: Final = "V_aw"
 MOST: Final = 3
 """How often the best effect may give way: each takes the slopes of the whole catalogue anew."""
 
@@ -94,6 +95,13 @@ def foretell_far_more(
     return [most] if most is not None and is_far(_foretold(fit, most), done) else []
 
 
+def further_ones(
+    fit: Fit, named: Refit | None, ranking: Sequence[Candidate], refits: Sequence[Refit]
+) -> list[Candidate]:
+    """Candidates to fit whatever their slopes say."""
+    return [*further_gears(fit, named, ranking, refits), *further_winds(fit, ranking, refits)]
+
+
 def further_gears(
     fit: Fit, named: Refit | None, ranking: Sequence[Candidate], refits: Sequence[Refit]
 ) -> list[Candidate]:
@@ -109,6 +117,22 @@ def further_gears(
     fitted = {r.candidate.effect.name for r in refits}
     able = (c for c in ranking if c.allowed and moves_rudder(c.effect))
     return [c for c in able if c.effect.name not in fitted]
+
+
+def further_winds(
+    fit: Fit, ranking: Sequence[Candidate], refits: Sequence[Refit]
+) -> list[Candidate]:
+    """Forces of the wind that an anemometer logged, where the model has none.
+
+    Whatever their slopes say: without the wind that heels her a yacht of an outsider had a GM of
+    0.0005 m, from which 38.3 % of an error of 38.8 % were foretold with a lever beyond what is
+    physical. Fitted, the wind left 10.1 %.
+    """
+    if any(WIND in e.signals for e in fit.model.effects):
+        return []
+    fitted = {r.candidate.effect.name for r in refits}
+    able = (c for c in ranking if WIND in c.effect.signals and c.effect.name not in fitted)
+    return [replace(c, allowed=True) for c in able]
 
 
 def far_ahead(
