@@ -26,6 +26,8 @@ from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
 
 WIND: Final = "V_aw"
+"""What an anemometer logs."""
+
 MOST: Final = 3
 """How often the best effect may give way: each takes the slopes of the whole catalogue anew."""
 
