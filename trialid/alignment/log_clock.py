@@ -26,8 +26,9 @@ Instant = float | datetime
 LEAP_S = {18.0: "GPS time and UTC", 19.0: "TAI and GPS time", 37.0: "TAI and UTC"}
 """Leap seconds between two time scales, since 2017."""
 LEAP_WITHIN = 0.5
-FASTEST = 0.01
-"""Drift above which two events are not of one clock: a watch keeps a hundred times better."""
+FASTEST = 0.05
+"""Drift above which two events are not of one clock: a watch keeps a thousand times better, and
+rows that were counted at a nominal rate no better, for which `clock_drift` effects seek as much."""
 
 
 @dataclass(frozen=True)
