@@ -22,7 +22,9 @@ POSITIVE = frozenset(
 """What stands beside a side behind a unit: `deg, + stbd`."""
 
 BRACKETED = re.compile(r"[\[(](.*)[\])]")
-TO_NORTH = frozenset(("T", "true", "True"))  # a heading's; a tesla is of no ship
+TO_NORTH = frozenset(("T", "true", "True"))
+"""What stands behind a heading in the place of a unit; nothing aboard is measured in tesla."""
+
 DASHES = frozenset("-\N{EN DASH}\N{EM DASH}")
 
 MISSING = frozenset({"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"})
