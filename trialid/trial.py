@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
@@ -191,3 +191,22 @@ class Trial:
             start=self.start + round(begin * self.period * 1e9),
             opening=self.opening + begin * self.period,
         )
+
+
+WIND: Final = ("V_aw", "gamma_aw")
+"""What an anemometer logs."""
+
+
+def heel_in_calm(trial: Trial, turning: Vector, valid: Mask) -> Vector:
+    """Her roll angle less what goes with a logged wind from the side, beside `turning`; (N,).
+
+    A yacht heeled 1.3 deg out of her turns and more by gusts: her heel went with r u by 0.88.
+    """
+    heel = trial.signals["phi"]
+    if not {*WIND} <= trial.signals.keys():
+        return heel
+    speed, angle = (trial.signals[name] for name in WIND)
+    push = np.nan_to_num(speed**2 * np.sin(angle))
+    columns = np.column_stack([np.ones(trial.samples), turning, push])
+    (_, _, by_wind), *_ = np.linalg.lstsq(columns[valid], heel[valid], rcond=None)
+    return np.asarray(heel - by_wind * push)

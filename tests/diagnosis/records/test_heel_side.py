@@ -138,3 +138,18 @@ def test_a_rate_that_was_turned_round_in_one_trial_is_told_by_the_roll(wrong):
     found = settle(fit, Verdict("missing", "rudder_stall", ("rudder_stall",), "it is"))
     assert found.effect is None
     assert "into her turns in zigzag-20 and out of them in zigzag-10" in found.sentence
+
+
+@pytest.mark.parametrize("logged", [True, False])
+def test_gusts_that_were_logged_are_not_her_turns(wrong, logged):
+    """A yacht of an outsider heeled 1.3 deg out of her turns, by 0.88 into them with her gusts."""
+    rng, trials = np.random.default_rng(4111), []
+    for trial in sailed():
+        r, phi = trial.signals["r"], trial.signals["phi"]
+        push = r / np.std(r) + 0.5 * rng.normal(size=trial.samples)
+        wind = {"V_aw": 10.0 * np.sqrt(np.abs(push)), "gamma_aw": np.copysign(0.5 * np.pi, push)}
+        signals = {**trial.signals, "phi": phi + 2.0 * np.std(phi) * push}
+        trials.append(replace(trial, signals=signals | wind if logged else signals))
+    inward, outward = leans_to(of_trials(wrong, trials))
+    assert (inward == ()) is logged
+    assert ("zigzag-20" in outward) is logged

@@ -17,7 +17,7 @@ from trialid.alignment.clocks import EMPTIEST, FEWEST, Grid, Series, in_time_ord
 from trialid.alignment.resample import resample
 from trialid.arrays import Mask, Vector
 from trialid.names.quantities import RUDDERS, SLOPES
-from trialid.trial import Trial
+from trialid.trial import Trial, heel_in_calm
 
 STILL = 0.1
 """[m/s] Speed at which no rudder steers: a moored boat's GPS shows 0.02 to 0.06 m/s."""
@@ -75,7 +75,9 @@ def _heel(trial: Trial) -> Iterator[Finding]:
         return
     u, known = _speed(trial)
     valid = turning[1] & trial.valid["phi"] & known
-    found = relation.of_values(turning[0] * u, trial.signals["phi"], valid, trial.period)
+    centrifugal = turning[0] * u
+    heel = heel_in_calm(trial, centrifugal, valid)
+    found = relation.of_values(centrifugal, heel, valid, trial.period)
     turned = float(np.ptp(np.cumsum(np.where(valid, turning[0], 0.0)))) * trial.period
     if found is None or turned < TURNS or min(found.moves) < MOVING:
         return

@@ -12,7 +12,7 @@ import numpy as np
 from trialid.errors import list_names
 from trialid.identification.fit import Fit
 from trialid.names.quantities import SIGNALS
-from trialid.trial import Trial
+from trialid.trial import Trial, heel_in_calm
 
 CLEARLY: Final = 0.4
 """Correlation of heel and r u from which on she leans to one side in her turns. Of 104 records of a
@@ -48,12 +48,14 @@ def _lean(trial: Trial) -> float:
     if not {"phi", "r"} <= trial.signals.keys():
         return 0.0
     known = trial.valid["phi"] & trial.valid["r"]
-    phi, r = trial.signals["phi"][known], trial.signals["r"][known]
-    speed = trial.signals["u"][known] if "u" in trial.signals else np.ones(len(r))
-    turned = float(np.ptp(np.cumsum(r))) * trial.period if len(r) else 0.0
-    if turned < TURNS or not (np.ptp(phi) > 0.0 and np.ptp(r * speed) > 0.0):
+    r, speed = trial.signals["r"], trial.signals.get("u", np.ones(trial.samples))
+    turned = float(np.ptp(np.cumsum(r[known]))) * trial.period if known.any() else 0.0
+    if turned < TURNS:
         return 0.0
-    return float(np.corrcoef(phi, r * speed)[0, 1])
+    phi, turning = heel_in_calm(trial, r * speed, known)[known], (r * speed)[known]
+    if not (np.ptp(phi) > 0.0 and np.ptp(turning) > 0.0):
+        return 0.0
+    return float(np.corrcoef(phi, turning)[0, 1])
 
 
 def side_in_doubt(fit: Fit) -> str | None:
