@@ -147,10 +147,11 @@ def test_a_wrong_uncertainty(line: str, says: str, text: str, tmp_path: Path) ->
     ("changed", "said"),
     [
         ({"L": 17.5}, r"nabla = 21222 m3 is more than L B T = 3778"),
+        ({"L": 1e308}, r"\[mass\] m = 0\.00792, and she floats at 0 by nabla and L"),
         ({"L": 574.0}, r"\[mass\] m = 0\.00792, and she floats at 0\.0002244 by nabla and L"),
         ({"m": 7.9}, r"\[mass\] m = 7\.9, and she floats at 0\.00792"),
     ],
-    ids=["a tenth", "feet", "of another system"],
+    ids=["a tenth", "beyond numbers", "feet", "of another system"],
 )
 def test_a_hull_that_cannot_be_is_refused(
     changed: dict[str, float], said: str, tmp_path: Path

@@ -218,8 +218,8 @@ def _check_volume(path: Path, table: Mapping[str, Any]) -> None:
             f"ship file {path}: [particulars] nabla = {nabla:g} m3 is more than L B T = {box:g} "
             "m3, and no hull is fuller than its box; check their units [m, m3]"
         )
-    floats = 2.0 * nabla / L**3 if table["system"] == "prime" else known["rho"] * nabla
-    if m > 0.0 and not 1.0 / AFLOAT < m / floats < AFLOAT:
+    floats = 2.0 * nabla / L / L / L if table["system"] == "prime" else known["rho"] * nabla
+    if m > 0.0 and not floats / AFLOAT < m < AFLOAT * floats:
         raise ShipError(
             f"ship file {path}: [mass] m = {m:g}, and she floats at {floats:.4g} by nabla and L; "
             "check their units, and the system of the file"
