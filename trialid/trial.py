@@ -194,13 +194,15 @@ class Trial:
 
 
 WIND: Final = ("V_aw", "gamma_aw")
-"""What an anemometer logs."""
+"""What an anemometer logs: speed [m/s] and angle [rad]."""
 
 
 def heel_in_calm(trial: Trial, turning: Vector, valid: Mask) -> Vector:
-    """Her roll angle less what goes with a logged wind from the side, beside `turning`; (N,).
+    """Her roll angle [rad] less what goes with a logged wind from the side; (N,).
 
-    A yacht heeled 1.3 deg out of her turns and more by gusts: her heel went with r u by 0.88.
+    By least squares over the `valid` samples, beside `turning`, the rate of turn times the speed
+    [m rad/s^2]; (N,) each. A yacht heeled 1.3 deg out of her turns and more by gusts: her heel went
+    with r u by 0.88.
     """
     heel = trial.signals["phi"]
     if not {*WIND} <= trial.signals.keys():

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from s175q import MODEL, zigzag
+from s175q import MODEL
 
 from trialid.diagnosis.search.score import Candidate
 from trialid.diagnosis.search.stand_in import further_winds
@@ -27,7 +27,7 @@ def candidate(name):
 
 
 def fitted(model=MODEL):
-    return SimpleNamespace(model=model, trials=(zigzag(10),))
+    return SimpleNamespace(model=model)
 
 
 RANKING = tuple(map(candidate, ("yaw_froude_r", *WINDS, "steady_wind")))

@@ -4,7 +4,7 @@ from trialid.ship.effect import Delayed, Effect, Lagged, Parameter, effect
 
 PRACTICE = "sensor practice: typical sizes from data sheets and sea trials"
 CLOCKS = "unsynchronised loggers: 1e-5 to 1e-4; rows counted at a nominal rate: to 0.05"
-"""Of 210 runs of outsiders' logs the slope of one clock that takes most off went beyond a tenth of
+"""Of 107 runs of outsiders' logs the slope of one clock that takes most off went beyond a tenth of
 that, of a gyro that was 2 % fast; at half and twice of it that one comes first as well."""
 
 

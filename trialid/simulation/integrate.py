@@ -233,7 +233,10 @@ def inputs(simulator: Simulator, trial: Trial, known: Mapping[str, float]) -> Ve
 
 
 def late_by(model: ShipModel, known: Mapping[str, float], t: Vector) -> dict[str, float | Vector]:
-    """By how much each late input acts after it is recorded [s]; (N,) where its clock drifts."""
+    """By how much each late input acts after it is recorded [s]; (N,) where its clock drifts.
+
+    `t` are the times of the samples [s]; (N,).
+    """
     total: dict[str, float | Vector] = dict.fromkeys(model.late_inputs, 0.0)
     for effect in model.effects if total else ():
         if set(effect.acts_on(Delayed)) & set(total):

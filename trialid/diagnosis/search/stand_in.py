@@ -24,9 +24,7 @@ from trialid.diagnosis.search.refit import Progress, Refit, moves_rudder, refit
 from trialid.diagnosis.search.score import Candidate
 from trialid.identification.fit import Fit
 from trialid.ship.effect import Effect
-
-WIND: Final = "V_aw"
-"""What an anemometer logs."""
+from trialid.trial import WIND
 
 MOST: Final = 3
 """How often the best effect may give way: each takes the slopes of the whole catalogue anew."""
@@ -130,11 +128,11 @@ def further_winds(
     0.0005 m, from which 38.3 % of an error of 38.8 % were foretold with a lever beyond what is
     physical. Fitted, the wind left 10.1 %.
     """
-    if any(WIND in e.signals for e in fit.model.effects):
+    if any({*WIND} & {*e.signals} for e in fit.model.effects):
         return []
     fitted = {r.candidate.effect.name for r in refits}
-    able = (c for c in ranking if WIND in c.effect.signals and c.effect.name not in fitted)
-    return [replace(c, allowed=True) for c in able]
+    able = (c for c in ranking if {*WIND} & {*c.effect.signals})
+    return [replace(c, allowed=True) for c in able if c.effect.name not in fitted]
 
 
 def far_ahead(
